@@ -37,7 +37,7 @@ async function askForStatus() {
 async function look() {
   const before = asked;
   try {
-    const status = events.told(asked) ?? await askForStatus();
+    const status = events.news(asked) ?? await askForStatus();
     seeStatus(status);
     seeNewest(status);
     seeWarnings(status);

@@ -48,7 +48,7 @@ test('a lens that was found says how exactly, and waits to be kept', () => {
   assert.match(lensOutcomeOf(found).detail, /From 14 pictures; .* 0\.07 pixels .*, 0\.03 mm at 30 cm/);
   const figures = lensFiguresOf(report, told);
   assert.equal(figures.length, 6);
-  assert.deepEqual([figures[0].text, figures[0].told], ['690.59 ± 0.04', 'configured 682.40']);
+  assert.deepEqual([figures[0].text, figures[0].configured], ['690.59 ± 0.04', 'configured 682.40']);
 });
 
 test('a lens that is refused, cancelled or failed is not to be kept', () => {

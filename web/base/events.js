@@ -47,7 +47,7 @@ let asked = 0;
 let source = null;
 
 /** The last status from the stream, if it is current. @param {number} asks  requests to the scanner so far @returns {Status | null} */
-export function told(asks) {
+export function news(asks) {
   if (asks !== asked) {
     asked = asks;
     heard.distrust(performance.now());

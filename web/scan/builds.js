@@ -108,7 +108,7 @@ const rowOf = ({build, model, settings, calibration, created, chosen, poses}, sh
   when: format.when(created),
   about: [
     text(`fact.${settings.method}`, {leaf: format.leaf(settings.leaf_size_mm)}),
-    text(settings.calibrate === 'told' ? 'build.pose-told' : calibration && !calibration.accepted ? 'build.pose-missing' : 'build.pose-checked'),
+    text(settings.calibrate === 'told' ? 'build.pose-stored' : calibration && !calibration.accepted ? 'build.pose-missing' : 'build.pose-checked'),
     model ? format.bytes(model.bytes) : '',
   ].filter(Boolean).join(' · '),
   isShown: build === shown,

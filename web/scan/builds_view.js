@@ -33,7 +33,7 @@ function explainFields() {
   const method = chosenMethod();
   setText(element('build-method-text'), explain(method));
   setText(element('build-pose-text'), text(element('build-pose').value === 'auto' ?
-    'builds.pose-auto-about' : 'builds.pose-told-about'));
+    'builds.pose-auto-about' : 'builds.pose-stored-about'));
   for (const row of form().querySelectorAll('[data-of]')) {
     const isOf = /** @type {HTMLElement} */ (row).dataset.of === method;
     show(row, isOf);

@@ -20,7 +20,7 @@ const betweenRigs = 5000;      // a calibration may change the pose
 const isWatched = () => !document.hidden && !element('main').hidden && !element('camera').hidden && element('stage').dataset.reachable === 'yes';
 
 /** @type {Pick<Rig, 'pose' | 'sensor'> | null} */
-let told = null;
+let known = null;
 let toldAt = -betweenRigs;  // by performance.now()
 
 /** Fetches the sensor's pose from time to time. Without it the picture has no lines and no hints. */
@@ -36,16 +36,16 @@ async function askForRig() {
       element('stage').dataset.sees = 'light';
       return;
     }
-    told = {pose, sensor: told?.sensor ?? (await requests.points()).sensor};
+    known = {pose, sensor: known?.sensor ?? (await requests.points()).sensor};
   } catch {
-    told = null;
+    known = null;
   }
 }
 
 /** @returns {Rig | null} */
 function rigNow() {
   const clip_mm = spaceChosen();
-  return told && clip_mm ? {...told, clip_mm} : null;
+  return known && clip_mm ? {...known, clip_mm} : null;
 }
 
 /** @type {{brightness: Uint8Array, seen: Seen} | null} the previous picture */

@@ -62,14 +62,14 @@ function showFigures(calibration) {
   const found = foundLens(calibration);
   const rows = found && calibration.lens ? lensFiguresOf(found, calibration.lens.told) : [];
   show(element('lens-figures'), rows.length > 0);
-  element('lens-figures').replaceChildren(...rows.map(({label, text, told}) => {
+  element('lens-figures').replaceChildren(...rows.map(({label, text, configured}) => {
     const row = document.createElement('div');
     const term = document.createElement('dt');
     const value = document.createElement('dd');
     term.textContent = label;
     const before = document.createElement('span');
     before.className = 'muted';
-    before.textContent = told;
+    before.textContent = configured;
     value.append(text, before);
     row.append(term, value);
     return row;

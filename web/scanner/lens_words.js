@@ -15,7 +15,7 @@ const usualDistance = 300;  // mm from camera to object, at which errors are sho
 /** @param {Calibration} calibration */
 export function keptText({lens}) {
   const kept = lens?.kept;
-  return kept ? text('lens.kept', {when: when(kept.at), serial: kept.serial, rms: fixed(kept.rms_px, 2)}) : text('lens.told');
+  return kept ? text('lens.kept', {when: when(kept.at), serial: kept.serial, rms: fixed(kept.rms_px, 2)}) : text('lens.configured');
 }
 
 /**
@@ -88,13 +88,13 @@ export function lensOutcomeOf(calibration) {
   return {tone: 'bad', title: text('run.failed'), detail: sentence(run.error ? refusalText(run.error) : ''), hint: sentence(run.error?.hint ?? '')};
 }
 
-/** @param {LensReport} report @param {Lens} told @returns {{label: string, text: string, told: string}[]} */
-export function lensFiguresOf({lens, sigma}, told) {
+/** @param {LensReport} report @param {Lens} configured @returns {{label: string, text: string, configured: string}[]} */
+export function lensFiguresOf({lens, sigma}, configured) {
   if (!lens || !sigma) {
     return [];
   }
   const row = (/** @type {string} */ label, /** @type {'fx' | 'fy' | 'cx' | 'cy' | 'k1' | 'k2'} */ key, /** @type {number} */ digits) => ({
-    label, text: text('lens.figure', {value: fixed(lens[key], digits), sigma: fixed(sigma[key], digits)}), told: text('lens.was-told', {told: fixed(told[key], digits)}),
+    label, text: text('lens.figure', {value: fixed(lens[key], digits), sigma: fixed(sigma[key], digits)}), configured: text('lens.was-configured', {configured: fixed(configured[key], digits)}),
   });
   return [
     row(text('lens.focal-across'), 'fx', 2), row(text('lens.focal-down'), 'fy', 2), row(text('lens.axis-column'), 'cx', 2), row(text('lens.axis-row'), 'cy', 2),

@@ -24,12 +24,12 @@ const pauseUntilRestarted = 500;  // milliseconds between polls
 /** @typedef {{form: HTMLFormElement, fields: SettingField[], saved: HTMLElement, actions: HTMLElement}} Card */
 
 /** @type {Configuration} */
-let told;
+let configuration;
 /** @type {Card[]} */
 const cards = [];
 
 /** The stored value of a setting, whether in force yet or not. @param {string} key */
-const valueOf = (key) => valueAt(told.stored, key) ?? valueAt(told.preset, key);
+const valueOf = (key) => valueAt(configuration.stored, key) ?? valueAt(configuration.preset, key);
 
 /** @param {SettingField} field */
 const isChanged = (field) => !areEqual(field.read(), valueOf(field.key));
@@ -43,7 +43,7 @@ const wordsOf = ({detail, title, hint}) => [detail || title, hint].map(sentence)
 /** @param {Card} card */
 function writeCard({fields}) {
   for (const field of fields) {
-    field.write(valueOf(field.key), valueAt(told.preset, field.key), valueAt(told.stored, field.key) !== undefined);
+    field.write(valueOf(field.key), valueAt(configuration.preset, field.key), valueAt(configuration.stored, field.key) !== undefined);
   }
 }
 
@@ -56,7 +56,7 @@ function showChanged({fields, actions}) {
 }
 
 function showPassword() {
-  const {password} = told;
+  const {password} = configuration;
   setText(element('password-about'), text(`settings.password-${password === 'octurn.json' ? 'file' : password}`));
   show(element('password-remove'), password === 'page');
 }
@@ -74,7 +74,7 @@ async function showPose() {
 }
 
 function showNews() {
-  const {stored, preset, trouble, settings} = told;
+  const {stored, preset, trouble, settings} = configuration;
   show(element('camera-card'), settings.sensor === 'laser-line');
   show(element('settings-trouble'), trouble !== '');
   setText(part(element('settings-trouble'), 'p'), sentence(trouble));
@@ -85,8 +85,8 @@ function showNews() {
 }
 
 async function showRestart() {
-  const isScanning = told.restart_needed.length > 0 && (await status()).scan !== null;
-  const text = restartText(told.restart_needed, isScanning);
+  const isScanning = configuration.restart_needed.length > 0 && (await status()).scan !== null;
+  const text = restartText(configuration.restart_needed, isScanning);
   setText(part(element('settings-restart'), 'p'), text);
   show(element('settings-restart'), text !== '');
 }
@@ -99,12 +99,12 @@ async function followRestart() {
     return;
   }
   isFollowing = true;
-  while (told.restart_needed.length > 0) {
+  while (configuration.restart_needed.length > 0) {
     await showRestart().catch(() => {});  // it does not answer while it restarts
     await new Promise((done) => {
       setTimeout(done, pauseUntilRestarted);
     });
-    told = await api.configuration().catch(() => told);
+    configuration = await api.configuration().catch(() => configuration);
   }
   isFollowing = false;
   show(element('settings-restart'), false);
@@ -116,7 +116,7 @@ async function followRestart() {
 
 /** @param {Configuration} news */
 function take(news) {
-  told = news;
+  configuration = news;
   showNews();
   followRestart();
 }
@@ -173,7 +173,7 @@ function makeCard(form) {
   const card = {form, fields: [], saved: part(form, '.saved'), actions: part(form, '.actions')};
   for (const place of /** @type {NodeListOf<HTMLElement>} */ (form.querySelectorAll('[data-fields]'))) {
     for (const key of (place.dataset.fields ?? '').split(' ')) {
-      const field = makeField(key, schemaAt(told.settings_schema, key), () => save(card, changeOf(key, null)));
+      const field = makeField(key, schemaAt(configuration.settings_schema, key), () => save(card, changeOf(key, null)));
       place.append(field.root);
       card.fields.push(field);
     }
@@ -249,7 +249,7 @@ async function restore() {
 
 async function begin() {
   try {
-    told = await api.configuration();
+    configuration = await api.configuration();
   } catch (error) {
     setText(part(element('settings-away'), 'strong'), text('settings.late'));
     setText(part(element('settings-away'), 'p'), wordsOf(problemOf(error)));
@@ -266,7 +266,7 @@ async function begin() {
   prepareOutgoing();
   preparePower();
   prepareTurntable(setTurntable);
-  take(told);
+  take(configuration);
 }
 
 function prepareLanguage() {

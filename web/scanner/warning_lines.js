@@ -64,13 +64,13 @@ function listen() {
 
 let isListening = false;
 
-/** @param {Finding[]} told  by the scanner, except those that are none in this browser */
-export function showWarnings(told) {
+/** @param {Finding[]} found  by the scanner, except those that are none in this browser */
+export function showWarnings(found) {
   if (!isListening) {
     isListening = true;
     listen();
   }
-  warnings = told;
+  warnings = found;
   const kinds = warnings.map(kindOf);
   if (!dismissed.every((kind) => kinds.includes(kind))) {
     dismiss(dismissed.filter((kind) => kinds.includes(kind)));  // a warning that ended is shown when it returns

@@ -3,7 +3,7 @@
 
 import {isRightClock, needsClock, sendClock} from './clock.js';
 
-/** @type {Promise<{showWarnings: (told: import('../api/api.js').Finding[]) => void}> | null} */
+/** @type {Promise<{showWarnings: (found: import('../api/api.js').Finding[]) => void}> | null} */
 let lines = null;
 let isClockSent = false;
 

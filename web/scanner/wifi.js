@@ -38,9 +38,9 @@ export function consequenceOf(wifi, chosen, page) {
 
 /**
  * The WiFi offered as a QR code: the scanner's own, or the one whose password was typed here. Pure.
- * @param {Wifi} wifi @param {{name: string, password: string} | null} told  the WiFi that the scanner was told to join
+ * @param {Wifi} wifi @param {{name: string, password: string} | null} wanted  the WiFi that the scanner was wanted to join
  */
-export const sharedOf = ({state, hotspot}, told) => told ?? (state === 'hotspot' ? {name: hotspot, password: ''} : null);
+export const sharedOf = ({state, hotspot}, wanted) => wanted ?? (state === 'hotspot' ? {name: hotspot, password: ''} : null);
 
 /** The number of signal bars, 1 to 4. Pure. @param {number} dbm */
 export const barsOf = (dbm) => dbm >= -55 ? 4 : dbm >= -65 ? 3 : dbm >= -75 ? 2 : 1;
@@ -131,7 +131,7 @@ function showCode(shared) {
 
 function render() {
   const isJoining = wifi.state === 'joining' || isAsked;
-  const trouble = isJoining ? null : failure ? {title: text('wifi.not-told'), detail: failure} : troubleOf(wifi);
+  const trouble = isJoining ? null : failure ? {title: text('wifi.not-sent'), detail: failure} : troubleOf(wifi);
   setText(element('wifi-summary'), isJoining ? summaryOf({...wifi, state: 'joining', name: asked || wifi.name}) : summaryOf(wifi));
   show(element('wifi-joining'), isJoining);
   setText(part(element('wifi-joining'), 'p'), asked ? farewell() : text('wifi.wait'));

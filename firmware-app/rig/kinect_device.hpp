@@ -23,6 +23,15 @@ inline constexpr int near_mode_property = 0x4F430012;
 /// Property of type PacketCounts: what arrived since the device was opened.
 inline constexpr int packet_counts_property = 0x4F430013;
 
+/// Set, type int: the driver logs so many packets of the stream from now on, and no more than
+/// `max_logged_packets`. Read: takes from the log as many UsbPackets as fit, the oldest first.
+inline constexpr int usb_log_property = 0x4F430014;
+
+/// The SCHED_FIFO priority of the thread that takes the packets: above the reconstruction's, which
+/// keeps all processors busy, and below the stepper's (`real_time_priority`). A late pulse costs
+/// steps, and a late packet readings.
+inline constexpr int usb_thread_priority = 30;
+
 /// The depth of a pixel whose packet was lost. No reading's depth is that large.
 inline constexpr std::uint16_t lost_depth = 65535;
 

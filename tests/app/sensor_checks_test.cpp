@@ -102,7 +102,7 @@ PacketCounts counts_of(int whole, int partial, int dropped, int lost_packets) {
 TEST(LostFramesCheck, TellsALossyWireFromABusyMachine) {
   const Finding some =
       check_lost_frames(sample_of(every_period_but({20, 30, 31}), counts_of(57, 0, 3, 900)));
-  EXPECT_EQ(some.measured, "3 of 60, 0 more in part; 1.5 % of the packets lost");
+  EXPECT_EQ(some.measured, "57 of 60 whole, 0 in part, 3 lost; 1.5 % of the packets lost");
   EXPECT_EQ(some.state, State::warning);
   EXPECT_NE(some.advice.find("cable"), std::string::npos);
   const Finding most =
@@ -115,7 +115,7 @@ TEST(LostFramesCheck, WarnsOfManyLostPackets) {
     return check_lost_frames(sample_of(every_period_but({}), counts_of(40, 20, 0, lost_packets)));
   };
   EXPECT_EQ(check(300).state, State::ok);
-  EXPECT_EQ(check(300).measured, "0 of 60, 20 more in part; 0.5 % of the packets lost");
+  EXPECT_EQ(check(300).measured, "40 of 60 whole, 20 in part, 0 lost; 0.5 % of the packets lost");
   EXPECT_EQ(check(1200).state, State::warning);
 }
 

@@ -1,5 +1,5 @@
 // A scan in the appliance's twin without faults, and then with them. Arguments: the folder of the card, the folder that
-// tests/emulation/twin/make has made, and `faults`, if these are asked for.
+// tests/emulation/twin/make has made, how many percent of its Kinect's packets are lost, and `faults`, if these are asked for.
 
 import {require, runTest} from './checks.mjs';
 import {secondsSince} from './guest.mjs';
@@ -8,7 +8,7 @@ import {testFaults} from './twin_faults.mjs';
 import {GuestKinect} from './twin_kinect.mjs';
 import {stepsPerTurn} from '../emulation/twin/turntable.mjs';
 
-const [card, made, faults] = process.argv.slice(2);
+const [card, made, loss, faults] = process.argv.slice(2);
 const stops = 8;
 const say = teller('twin');
 
@@ -20,10 +20,10 @@ async function testScan(twin) {
   const begin = performance.now();
   const done = await twin.finishes(scan);
   const seconds = secondsSince(begin);
-  const {sent} = await twin.sensor.frames();
+  const {sent, damaged} = await twin.sensor.frames();
   const {pulses, position} = twin.turntable;
   say(`a scan of ${stops} snapshots in ${seconds.toFixed(1)} s, ${done.seconds_elapsed.toFixed(1)} s by the scanner's clock: ` +
-    `${lateOf(done)}, ${sent} frames; the daemon's verdict: ${done.model.quality.verdict}`);
+    `${lateOf(done)}, ${sent} frames, ${damaged} of them damaged; the daemon's verdict: ${done.model.quality.verdict}`);
   require(pulses === stepsPerTurn && position === stepsPerTurn, `after a turn of ${stepsPerTurn} steps the platform is at ${position}`);
   say(`its model: ${await twin.checkModel(scan)}`);
   return scan;
@@ -50,6 +50,7 @@ async function testBusyScan(twin, model) {
 const twin = await Twin.make(card, made, (turntable) => GuestKinect.make(made, turntable));
 await runTest('twin', () => twin.guest, async () => {
   say(await twin.start());
+  await twin.sensor.tell(`drop ${loss / 100}`);
   await testBusyScan(twin, await testScan(twin));
   if (faults === 'faults') {
     await testFaults(twin, say);

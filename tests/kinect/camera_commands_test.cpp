@@ -32,8 +32,9 @@ class CameraCommandsTest : public ::testing::Test {
   }
 
   EmulatedKinect kinect_ = {};
-  std::vector<Camera::Reading> frame_ = std::vector<Camera::Reading>(Camera::pixels);
-  Camera camera_{kinect_, over_and_over(frame_)};
+  std::vector<EmulatedCamera::Reading> frame_ =
+      std::vector<EmulatedCamera::Reading>(EmulatedCamera::pixels);
+  EmulatedCamera camera_{kinect_, over_and_over(frame_)};
   CameraCommands commands_{{.write =
                                 [this](auto data, auto /*timeout*/) {
                                   std::vector<std::uint8_t> copy(data.begin(), data.end());

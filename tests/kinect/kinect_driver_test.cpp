@@ -2,18 +2,23 @@
 
 #include <OpenNI.h>
 #include <gtest/gtest.h>
+#include <pthread.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <numbers>
 #include <span>
+#include <thread>
 
 #include "kinect/plain_frames.hpp"
 #include "kinect/real_depths.hpp"
 #include "octurn/units.hpp"
+#include "rig/kinect_device.hpp"
 #include "support/patience.hpp"
 #include "support/thrown_error.hpp"
+#include "turntable/real_time.hpp"
 
 namespace octurn {
 namespace {
@@ -31,7 +36,7 @@ TEST(KinectDriver, IsFoundAsAnySensor) {
 // Frame n begins at least n periods after the first one; a busy machine may delay the driver.
 TEST(KinectDriver, SendsAtMostThirtyFramesASecond) {
   KinectOnDesk desk(plain_frames(2));
-  constexpr std::chrono::microseconds period(267 * 125);  // Camera::microframes_in_frame
+  constexpr std::chrono::microseconds period(267 * 125);  // EmulatedCamera::microframes_in_frame
   const auto begin = steady_clock::now();
   const auto sensor = open_sensor("kinect://");
   int frames = 0;
@@ -44,6 +49,24 @@ TEST(KinectDriver, SendsAtMostThirtyFramesASecond) {
   EXPECT_GE(last - begin, (frames - 1) * period);
   EXPECT_GE(desk->frames_sent, frames);
   EXPECT_EQ(desk->video_starts, 0);
+}
+
+/// Whether this process may give a thread that real-time priority.
+bool may_have(int priority) {
+  bool may = false;
+  std::jthread([&] {
+    const sched_param wanted{.sched_priority = priority};
+    may = ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &wanted) == 0;
+  }).join();
+  return may;
+}
+
+TEST(KinectDriver, TakesPacketsAboveTheReconstructionAndBelowTheStepperWhereItMay) {
+  static_assert(usb_thread_priority > 0 && usb_thread_priority < real_time_priority);
+  KinectOnDesk desk({frame_of(700)});
+  const auto sensor = open_sensor("kinect://");
+  next_frame(*sensor);
+  EXPECT_EQ(desk->stream_priority, may_have(usb_thread_priority) ? usb_thread_priority : 0);
 }
 
 // The driver numbers the frames that it delivers; each frame's readings show its number on the

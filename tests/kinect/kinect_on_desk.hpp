@@ -38,6 +38,9 @@ class KinectOnDesk {
   EmulatedKinect& kinect() { return control_->as<EmulatedKinect>(); }
   EmulatedKinect* operator->() { return &kinect(); }
 
+  /// Repeats the losses of a recording from when it is opened next. @param text  of the file
+  void repeat_losses(const std::string& text) { put(folder_.path() / "usb", text); }
+
   void unplug() { kinect().plugged = false; }
   void plug_in() {
     ++kinect().plugged_times;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include "kinect/emulated/usb_parts.hpp"
 #include "kinect/plain_frames.hpp"
 #include "support/thrown_error.hpp"
 
@@ -34,6 +35,28 @@ TEST(KinectOpening, SurvivesAShortReplyAStaleOneAndAStall) {
 TEST(KinectOpening, LeavesTheAudioPartAlone) {
   expect_depth([](EmulatedKinect& kinect) { kinect.model = KinectModel::k1473; });
   expect_depth([](EmulatedKinect& kinect) { kinect.model = KinectModel::for_windows; });
+}
+
+// Their cameras have no serial number, and are known by that of their audio part.
+TEST(KinectOpening, WaitsForAnAudioPartThatVanishedAfterAReset) {
+  for (const KinectModel model : {KinectModel::k1473, KinectModel::for_windows}) {
+    KinectOnDesk desk({frame_of(700)});
+    desk->model = model;
+    desk->audio_absences = 10;
+    const auto sensor = open_sensor("kinect://");
+    EXPECT_EQ(sensor->serial(), kinect_serial_number);
+    EXPECT_GT(next_frame(*sensor).depth[0], 0);
+  }
+}
+
+TEST(KinectOpening, GoesOnWithoutAnAudioPartThatStaysAway) {
+  constexpr int for_ever = 1'000'000;
+  KinectOnDesk desk({frame_of(700)});
+  desk->model = KinectModel::k1473;
+  desk->audio_absences = for_ever;
+  const auto sensor = open_sensor("kinect://");
+  EXPECT_NE(sensor->serial(), kinect_serial_number);
+  EXPECT_GT(next_frame(*sensor).depth[0], 0);
 }
 
 TEST(KinectOpening, GoesOnWithoutAMotorThatNeverAnswers) {

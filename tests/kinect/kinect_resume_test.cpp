@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <tuple>
 
 #include "kinect/kinect_on_desk.hpp"
@@ -41,7 +43,7 @@ class FailingKinect {
       : fault_(fault),
         daemon_(folder_.path(), {"--sensor", "kinect://", "--simulate-speed", speed}) {}
 
-  const Daemon& daemon() const { return daemon_; }
+  Daemon& daemon() { return daemon_; }
   void mend() { fault_.end(desk_); }
 
   /// Posts until it is accepted: a Kinect is not ready at once.
@@ -122,6 +124,43 @@ TEST_P(KinectFaultsThatPass, DoNotPauseAScan) {
   const json done = kinect.daemon().wait_until_done(scan);
   EXPECT_EQ(done["state"], "finished") << done;
   EXPECT_EQ(done["error"], nullptr);
+}
+
+/// Has the system stop a daemon for longer than a sensor may be silent, and than opening one takes.
+/// @param meanwhile  called while it is stopped
+template <typename Meanwhile>
+void stop_for_a_while(Daemon& daemon, Meanwhile meanwhile) {
+  daemon.program().send_signal(SIGSTOP);
+  meanwhile();
+  std::this_thread::sleep_for(std::chrono::seconds(5));  // the fault is that real time passes
+  daemon.program().send_signal(SIGCONT);
+}
+
+TEST(StoppedDaemon, GoesOnWithItsScan) {
+  KinectOnDesk desk({readings_of(simulated_frame())});
+  desk->is_hasty = true;
+  const TemporaryFolder folder;
+  Daemon daemon(folder.path(), {"--sensor", "kinect://", "--simulate-speed", "5"});
+  const std::string scan = daemon.start(settings);
+  daemon.wait_until(scan, [](const json& now) { return now["snapshots_done"] >= 1; });
+  stop_for_a_while(daemon, [] {});
+  const json done = daemon.wait_until_done(scan);
+  EXPECT_EQ(done["state"], "finished") << done;
+}
+
+TEST(StoppedDaemon, OpensItsKinectAfterAll) {
+  const Fault plugged_in_again{"plugged in again",
+                               [](KinectOnDesk& desk) {
+                                 desk->stalls = 1'000'000;  // it does not open
+                                 desk.unplug();
+                                 desk.plug_in();
+                               },
+                               [](KinectOnDesk& desk) { desk->stalls = 0; }, "sensor-failed"};
+  FailingKinect kinect(plugged_in_again, "1");
+  const std::string scan = kinect.scan_that_fails(1);
+  stop_for_a_while(kinect.daemon(), [&] { kinect.mend(); });
+  const json done = kinect.daemon().wait_until_done(scan);
+  EXPECT_EQ(done["state"], "finished") << done;
 }
 
 INSTANTIATE_TEST_SUITE_P(Each, KinectFaultsThatPass, ::testing::Values(silent, unplugged, damaged));

@@ -15,7 +15,7 @@
 namespace octurn {
 namespace {
 
-constexpr int of_frame = Camera::packets_in_frame;
+constexpr int of_frame = EmulatedCamera::packets_in_frame;
 constexpr int modulus = 2039;  // a prime: its multiples fit neither rows nor packets
 
 /// Packets of the emulated camera, and the frames that are made of those that are not lost.
@@ -45,7 +45,7 @@ class Wire {
 
  private:
   void check(const ReceivedFrame& frame) {
-    std::vector<std::uint16_t> readings(Camera::pixels);
+    std::vector<std::uint16_t> readings(EmulatedCamera::pixels);
     unpack_depth(frame, readings);
     std::set<int> pictures;
     std::size_t lost = 0;
@@ -65,14 +65,15 @@ class Wire {
   }
 
   EmulatedKinect kinect_ = {};
-  std::vector<Camera::Reading> picture_ = std::vector<Camera::Reading>(Camera::pixels);
-  Camera camera_{kinect_, [this](int frame) {
-                   for (std::size_t i = 0; i < picture_.size(); ++i) {
-                     picture_[i] = static_cast<Camera::Reading>(
-                         (i + static_cast<std::size_t>(frame) * 7) % modulus);
-                   }
-                   return std::span<const Camera::Reading>(picture_);
-                 }};
+  std::vector<EmulatedCamera::Reading> picture_ =
+      std::vector<EmulatedCamera::Reading>(EmulatedCamera::pixels);
+  EmulatedCamera camera_{kinect_, [this](int frame) {
+                           for (std::size_t i = 0; i < picture_.size(); ++i) {
+                             picture_[i] = static_cast<EmulatedCamera::Reading>(
+                                 (i + static_cast<std::size_t>(frame) * 7) % modulus);
+                           }
+                           return std::span<const EmulatedCamera::Reading>(picture_);
+                         }};
   PacketFrames frames_{depth_packets, [this](const ReceivedFrame& frame) { check(frame); }};
   PacketFrames::Clock::time_point time_ = {};
   int number_ = 0;

@@ -148,8 +148,8 @@ class UsbipDeviceTest : public ::testing::Test {
   }
 
   EmulatedKinect kinect_;
-  std::vector<std::uint16_t> frame_ = std::vector<std::uint16_t>(Camera::pixels);
-  Camera camera_{kinect_, over_and_over(frame_)};
+  std::vector<std::uint16_t> frame_ = std::vector<std::uint16_t>(EmulatedCamera::pixels);
+  EmulatedCamera camera_{kinect_, over_and_over(frame_)};
   FileDescriptor host_;
   std::optional<UsbipDevice> device_;
   std::uint32_t sequence_ = 0;

@@ -1076,7 +1076,7 @@ export const said = {
   'Connect the scanner to a network with internet, or its scans have wrong dates.': 'Den Scanner mit einem Netz mit Internet verbinden, sonst haben seine Scans falsche Daten.',
   '{} frames a second': '{} Bilder in der Sekunde',
   '{} of {}': '{} von {}',
-  '{} of {}, {} more in part; {} % of the packets lost': '{} von {}, {} weitere nur zum Teil; {} % der Pakete verloren',
+  '{} of {} whole, {} in part, {} lost; {} % of the packets lost': '{} von {} ganz, {} zum Teil, {} verloren; {} % der Pakete verloren',
   'End other programs on this machine, and give the sensor a USB port without a hub.': 'Andere Programme auf diesem Rechner beenden und dem Sensor einen USB-Anschluss ohne Hub geben.',
   'Plug the sensor directly into another USB port, and check its power supply and cable.': 'Den Sensor direkt in einen anderen USB-Anschluss stecken und Netzteil und Kabel prüfen.',
   'Plug the sensor directly into another USB port, and check its power supply and cable. Others report, without proof, that it helped on a Raspberry Pi {} to plug any other USB device into a free port, to use a powered hub, or to start Linux with pcie_aspm=off.': 'Den Sensor direkt in einen anderen USB-Anschluss stecken und Netzteil und Kabel prüfen. Andere berichten, ohne Beweis, dass auf einem Raspberry Pi {} half: irgendein anderes USB-Gerät in einem freien Anschluss, ein Hub mit eigenem Netzteil, oder Linux mit pcie_aspm=off zu starten.',

@@ -1076,7 +1076,7 @@ export const said = {
   'Connect the scanner to a network with internet, or its scans have wrong dates.': 'Conectar el escáner a una red con internet, o sus escaneos tendrán fechas falsas.',
   '{} frames a second': '{} imágenes por segundo',
   '{} of {}': '{} de {}',
-  '{} of {}, {} more in part; {} % of the packets lost': '{} de {}, otras {} solo en parte; {} % de los paquetes perdidos',
+  '{} of {} whole, {} in part, {} lost; {} % of the packets lost': '{} de {} enteras, {} en parte, {} perdidas; {} % de los paquetes perdidos',
   'End other programs on this machine, and give the sensor a USB port without a hub.': 'Cerrar otros programas en este equipo y dar al sensor un puerto USB sin concentrador.',
   'Plug the sensor directly into another USB port, and check its power supply and cable.': 'Conectar el sensor directamente a otro puerto USB y comprobar su fuente y su cable.',
   'Plug the sensor directly into another USB port, and check its power supply and cable. Others report, without proof, that it helped on a Raspberry Pi {} to plug any other USB device into a free port, to use a powered hub, or to start Linux with pcie_aspm=off.': 'Conectar el sensor directamente a otro puerto USB y comprobar su fuente y su cable. Otros cuentan, sin pruebas, que en una Raspberry Pi {} ayudó conectar cualquier otro dispositivo USB a un puerto libre, usar un concentrador con alimentación propia o iniciar Linux con pcie_aspm=off.',

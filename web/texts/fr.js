@@ -1076,7 +1076,7 @@ export const said = {
   'Connect the scanner to a network with internet, or its scans have wrong dates.': 'Relier le scanner à un réseau avec internet, sinon ses numérisations ont de fausses dates.',
   '{} frames a second': '{} images par seconde',
   '{} of {}': '{} sur {}',
-  '{} of {}, {} more in part; {} % of the packets lost': '{} sur {}, {} autres en partie seulement ; {} % des paquets perdus',
+  '{} of {} whole, {} in part, {} lost; {} % of the packets lost': '{} sur {} entières, {} en partie, {} perdues ; {} % des paquets perdus',
   'End other programs on this machine, and give the sensor a USB port without a hub.': 'Fermer d’autres programmes sur cette machine et donner au capteur un port USB sans hub.',
   'Plug the sensor directly into another USB port, and check its power supply and cable.': 'Brancher le capteur directement sur un autre port USB et vérifier son alimentation et son câble.',
   'Plug the sensor directly into another USB port, and check its power supply and cable. Others report, without proof, that it helped on a Raspberry Pi {} to plug any other USB device into a free port, to use a powered hub, or to start Linux with pcie_aspm=off.': 'Brancher le capteur directement sur un autre port USB et vérifier son alimentation et son câble. D’autres rapportent, sans preuve, que sur un Raspberry Pi {} il a été utile de brancher un autre appareil USB sur un port libre, d’employer un hub alimenté ou de démarrer Linux avec pcie_aspm=off.',

@@ -1,7 +1,9 @@
 // Octurn's driver for the Kinect v1 as OpenNI2 loads it: models 1414, 1473 and Kinect for Windows.
 // It looks for Kinects when OpenNI2 starts, and again whenever one is opened by its URI.
 
+#include <algorithm>
 #include <charconv>
+#include <span>
 #include <string>
 
 #include "depth_driver.hpp"
@@ -34,6 +36,7 @@ class Device final : public DepthDevice {
     switch (property) {
       case ONI_DEVICE_PROPERTY_ERROR_STATE:
       case packet_counts_property:
+      case usb_log_property:
         return TRUE;
       case ONI_DEVICE_PROPERTY_SERIAL_NUMBER:
         return kinect_.serial().empty() ? FALSE : TRUE;
@@ -58,6 +61,12 @@ class Device final : public DepthDevice {
     if (property == packet_counts_property) {
       return give_property(kinect_.packet_counts(), data, size);
     }
+    if (property == usb_log_property) {
+      const std::span packets(static_cast<UsbPacket*>(data),
+                              static_cast<std::size_t>(*size) / sizeof(UsbPacket));
+      *size = static_cast<int>(kinect_.take_logged(packets) * sizeof(UsbPacket));
+      return ONI_STATUS_OK;
+    }
     if (property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER && !kinect_.serial().empty()) {
       return give_text(kinect_.serial(), data, size);
     }
@@ -65,6 +74,15 @@ class Device final : public DepthDevice {
   }
 
   OniStatus setProperty(int property, const void* data, int size) override {
+    if (property == usb_log_property) {
+      int count = 0;
+      const OniStatus status = take_property(count, data, size);
+      if (status == ONI_STATUS_OK) {
+        kinect_.log_packets(
+            std::min(static_cast<std::size_t>(std::max(count, 0)), max_logged_packets));
+      }
+      return status;
+    }
     if (property != near_mode_property || !kinect_.has_near_mode()) {
       return ONI_STATUS_NOT_SUPPORTED;
     }

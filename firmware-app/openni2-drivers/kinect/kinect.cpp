@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <thread>
-#include <vector>
 
 #include "kinect/usb_place.hpp"
 #include "octurn/error.hpp"
@@ -21,6 +20,9 @@ constexpr std::uint8_t depth_endpoint = 0x82;
 constexpr std::uint16_t release_of_1414 = 0x010B;
 
 constexpr auto opening_patience = 4s;
+// An audio part vanishes for 2 s after a reset, and then has to be listed.
+constexpr auto audio_patience = 3s;
+constexpr auto audio_interval = 100ms;
 constexpr auto motor_patience = 500ms;
 // A stop request may come while the stream starts: together with the end of the transfers, 2 s.
 constexpr auto starting_patience = 1s;
@@ -55,10 +57,17 @@ std::unique_ptr<UsbDevice> open_beside(const UsbPart& camera,
   return nullptr;
 }
 
-std::string serial_of(const UsbDevice& camera, const UsbPart& part, int index) {
+/// Waits for an audio part that is away: by its port the Kinect would be another one, without its
+/// sensor map and its optics.
+std::string serial_of(const UsbDevice& camera, const UsbPart& part, int index,
+                      steady_clock::time_point deadline) {
   std::string serial = camera.serial();
   if (serial.empty()) {
-    const auto audio = open_beside(part, &UsbPart::is_audio);
+    auto audio = open_beside(part, &UsbPart::is_audio);
+    while (!audio && steady_clock::now() < deadline) {
+      std::this_thread::sleep_for(audio_interval);
+      audio = open_beside(part, &UsbPart::is_audio);
+    }
     serial = audio ? audio->serial() : std::string();
   }
   return serial.empty() ? usb_place(index) : serial;
@@ -89,10 +98,11 @@ Kinect::Kinect(int index)
     : commands_(
           {.write = [this](auto data, auto timeout) { return camera_->write(0, data, timeout); },
            .read = [this](auto data, auto timeout) { return camera_->read(0, data, timeout); }}) {
+  const auto begin = steady_clock::now();
   const UsbPart camera = camera_of(index);
   camera_ = std::make_unique<UsbDevice>(camera);
-  parameters_ = commands_.parameters(steady_clock::now() + opening_patience);
-  serial_ = serial_of(*camera_, camera, index);
+  parameters_ = commands_.parameters(begin + opening_patience);
+  serial_ = serial_of(*camera_, camera, index, begin + audio_patience);
   has_near_mode_ = camera.is_for_windows();
   if (camera.release == release_of_1414) {
     motor_ = open_beside(camera, &UsbPart::is_motor);
@@ -156,8 +166,9 @@ void Kinect::stream(const std::stop_token& stop,
     }
   });
   try {
-    camera_->begin_stream(depth_endpoint, [&](std::span<const std::uint8_t> packet) {
-      frames.take(packet, steady_clock::now());
+    camera_->begin_stream(depth_endpoint, [&](const IsoPacket& packet) {
+      log(packet);
+      frames.take(packet.data, packet.time);
     });
     start_depth();
     while (!stop.stop_requested() && camera_->handle_events()) {
@@ -188,6 +199,38 @@ bool Kinect::count_packets(const ReceivedFrame& frame) {
 PacketCounts Kinect::packet_counts() const {
   const std::lock_guard lock(counts_mutex_);
   return counts_;
+}
+
+/// All memory is taken now, and none by the stream's thread.
+void Kinect::log_packets(std::size_t count) {
+  const std::lock_guard lock(log_mutex_);
+  log_.clear();
+  log_.reserve(count);
+  log_room_ = count;
+}
+
+std::size_t Kinect::take_logged(std::span<UsbPacket> packets) {
+  const std::lock_guard lock(log_mutex_);
+  const std::size_t count = std::min(log_.size(), packets.size());
+  const auto end = log_.begin() + static_cast<std::ptrdiff_t>(count);
+  std::copy(log_.begin(), end, packets.begin());
+  log_.erase(log_.begin(), end);
+  return count;
+}
+
+void Kinect::log(const IsoPacket& packet) {
+  const std::lock_guard lock(log_mutex_);
+  if (log_room_ == 0) {
+    return;
+  }
+  --log_room_;
+  UsbPacket& logged = log_.emplace_back();
+  logged.time_us =
+      std::chrono::duration_cast<std::chrono::microseconds>(packet.time.time_since_epoch()).count();
+  logged.status = packet.status;
+  logged.bytes = static_cast<std::uint16_t>(packet.data.size());
+  std::copy_n(packet.data.begin(), std::min(packet.data.size(), logged.header.size()),
+              logged.header.begin());
 }
 
 }  // namespace octurn

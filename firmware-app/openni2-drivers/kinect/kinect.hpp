@@ -11,6 +11,7 @@
 #include <span>
 #include <stop_token>
 #include <string>
+#include <vector>
 
 #include "kinect/camera_commands.hpp"
 #include "kinect/depth_table.hpp"
@@ -18,6 +19,7 @@
 #include "kinect/usb_device.hpp"
 #include "rig/packet_counts.hpp"
 #include "rig/tilt.hpp"
+#include "rig/usb_log.hpp"
 
 namespace octurn {
 
@@ -65,12 +67,19 @@ class Kinect {
 
   PacketCounts packet_counts() const;
 
+  /// Logs the stream's next packets, at most `count`, and forgets an earlier log.
+  void log_packets(std::size_t count);
+
+  /// Takes packets from the log, the oldest first, as many as fit. @return their number
+  std::size_t take_logged(std::span<UsbPacket> packets);
+
   /// Whether it was unplugged, or hangs.
   bool is_lost() const { return is_lost_; }
 
  private:
   void start_depth();
   bool count_packets(const ReceivedFrame& frame);
+  void log(const IsoPacket& packet);
 
   std::mutex usb_;  // guards camera_ and commands_; held while a stream runs
   std::unique_ptr<UsbDevice> camera_;
@@ -83,6 +92,9 @@ class Kinect {
   std::atomic<bool> is_lost_ = false;
   mutable std::mutex counts_mutex_;  // guards counts_
   PacketCounts counts_ = {};
+  std::mutex log_mutex_;  // guards log_ and log_room_
+  std::vector<UsbPacket> log_ = {};
+  std::size_t log_room_ = 0;  // packets that are still to be logged
 };
 
 }  // namespace octurn

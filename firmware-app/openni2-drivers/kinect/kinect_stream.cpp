@@ -1,10 +1,22 @@
 #include "kinect/kinect_stream.hpp"
 
+#include <pthread.h>
+#include <sched.h>
+
 #include <algorithm>
 
 #include "rig/kinect_device.hpp"
 
 namespace octurn {
+namespace {
+
+/// Without the permission this thread stays an ordinary one: `octurn doctor` says so.
+void ask_for_priority() {
+  const sched_param parameters{.sched_priority = usb_thread_priority};
+  ::pthread_setschedparam(::pthread_self(), SCHED_FIFO, &parameters);
+}
+
+}  // namespace
 
 KinectStream::KinectStream(Kinect& kinect)
     : DepthStream(kinect.parameters().focal_length()),
@@ -16,6 +28,7 @@ KinectStream::~KinectStream() = default;
 OniStatus KinectStream::start() {
   if (!thread_.joinable()) {
     thread_ = std::jthread([this](const std::stop_token& stop) {
+      ask_for_priority();
       kinect_.stream(stop, [this](const RawFrame& frame) { convert(frame); });
     });
   }

@@ -146,7 +146,7 @@ int UsbDevice::read(std::uint8_t request, std::span<std::uint8_t> data,
 }
 
 void UsbDevice::begin_stream(std::uint8_t endpoint,
-                             std::function<void(std::span<const std::uint8_t>)> on_packet) {
+                             std::function<void(const IsoPacket&)> on_packet) {
   if (in_flight_ > 0) {  // an earlier stream's, which the device has not given back
     throw_lost();
   }
@@ -181,12 +181,14 @@ void UsbDevice::take(libusb_transfer& transfer) {
       transfer.status == LIBUSB_TRANSFER_CANCELLED) {
     return;
   }
+  const steady_clock::time_point now = steady_clock::now();
   const std::uint8_t* data = transfer.buffer;
   for (int i = 0; i < transfer.num_iso_packets; ++i) {
     const libusb_iso_packet_descriptor& packet = transfer.iso_packet_desc[i];
-    if (packet.status == LIBUSB_TRANSFER_COMPLETED && packet.actual_length > 0) {
-      on_packet_(std::span(data, packet.actual_length));
-    }
+    const bool is_completed = packet.status == LIBUSB_TRANSFER_COMPLETED;
+    on_packet_({.time = now,
+                .status = static_cast<std::uint16_t>(packet.status),
+                .data = std::span(data, is_completed ? packet.actual_length : 0)});
     data += packet.length;
   }
   in_flight_ += libusb_submit_transfer(&transfer) == 0 ? 1 : 0;

@@ -27,6 +27,13 @@ struct UsbPart {
   bool is_audio() const { return product == 0x02AD || product == 0x02BB || product == 0x02BE; }
 };
 
+/// What an isochronous endpoint sent in a microframe.
+struct IsoPacket {
+  std::chrono::steady_clock::time_point time = {};  ///< arrival of its transfer
+  std::uint16_t status = 0;                         ///< a libusb_transfer_status; 0: completed
+  std::span<const std::uint8_t> data = {};  ///< empty if the microframe had no packet, or it failed
+};
+
 /// The parts of all Kinects that are plugged in, by bus and address.
 /// @throws Error "sensor-missing"  if USB cannot be used
 std::vector<UsbPart> usb_parts();
@@ -52,10 +59,9 @@ class UsbDevice {
   int read(std::uint8_t request, std::span<std::uint8_t> data, std::chrono::milliseconds timeout);
 
   /// Begins to read an isochronous endpoint.
-  /// @param on_packet  called by `handle_events` with each packet that arrived
+  /// @param on_packet  called by `handle_events` for each microframe
   /// @throws Error "sensor-lost"  if the device is gone
-  void begin_stream(std::uint8_t endpoint,
-                    std::function<void(std::span<const std::uint8_t>)> on_packet);
+  void begin_stream(std::uint8_t endpoint, std::function<void(const IsoPacket&)> on_packet);
 
   /// Waits for packets. @return false if the stream is over: the device is gone
   bool handle_events();
@@ -90,7 +96,7 @@ class UsbDevice {
   std::unique_ptr<libusb_context, ContextEnd> context_;
   std::vector<Transfer> transfers_ = {};
   std::unique_ptr<libusb_device_handle, HandleEnd> handle_;
-  std::function<void(std::span<const std::uint8_t>)> on_packet_ = {};
+  std::function<void(const IsoPacket&)> on_packet_ = {};
   int in_flight_ = 0;  // transfers that the device has
   bool ends_ = false;  // the stream is being ended
 };

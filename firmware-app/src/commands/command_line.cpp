@@ -6,6 +6,7 @@
 #include "commands/model_commands.hpp"
 #include "commands/options.hpp"
 #include "octurn/error.hpp"
+#include "rig/usb_log.hpp"
 #include "signal_stop.hpp"
 #include "version.hpp"
 
@@ -78,6 +79,18 @@ void add_record(CLI::App& program, RecordArguments& arguments) {
                       "folder for it, which must not exist yet")
           ->type_name("WALL_DIR")
           ->excludes(output);
+  CLI::Option* usb =
+      command
+          .add_option("--usb", arguments.usb,
+                      "file for what comes over USB: times, lengths, headers and losses of a "
+                      "Kinect's packets, without the depth in them; with --output those of the "
+                      "turn")
+          ->type_name("FILE")
+          ->excludes(wall);
+  command.add_option("--usb-seconds", arguments.usb_seconds, "how long --usb records (10)")
+      ->type_name("N")
+      ->check(CLI::Range(1, max_usb_log_seconds))
+      ->needs(usb);
   command.add_option("--snapshots", arguments.snapshots, "stops in a turn (36); 1 does not turn")
       ->type_name("N")
       ->check(CLI::Range(1, 200))
@@ -85,9 +98,9 @@ void add_record(CLI::App& program, RecordArguments& arguments) {
   command.add_option("--frames", arguments.frames, "frames at each stop (10), or of a wall (25)")
       ->type_name("N")
       ->check(CLI::Range(1, 100'000));
-  command.callback([&arguments, output, wall] {
-    if (output->count() + wall->count() == 0) {
-      throw CLI::RequiredError("--output or --wall");
+  command.callback([&arguments, output, wall, usb] {
+    if (output->count() + wall->count() + usb->count() == 0) {
+      throw CLI::RequiredError("--output, --wall or --usb");
     }
     record(arguments);
   });

@@ -81,13 +81,16 @@ struct RecordArguments {
   ConfigArguments config = {};
   std::filesystem::path output = {};
   std::filesystem::path wall = {};  ///< folder for frames of a wall, in place of a recording
+  std::filesystem::path usb = {};   ///< file for what came over USB; empty: none
+  int usb_seconds = 10;             ///< how long that is recorded
   int snapshots = 36;               ///< stops in a turn
   std::optional<int> frames = {};   ///< at each stop; default: 10, or 25 of a wall
 };
 
 /// `octurn record`: records the sensor during one turn of the platform, for `--sensor` to replay;
-/// or frames of a wall, for `octurn calibrate --wall`.
+/// or frames of a wall, for `octurn calibrate --wall`; or what comes over USB, without turning.
 void record(const RecordArguments& arguments);
+void record_usb(const RecordArguments& arguments);
 void record_wall(const RecordArguments& arguments);
 
 struct DoctorArguments {

@@ -2,6 +2,7 @@
 
 #include "capture/plan.hpp"
 #include "commands/commands.hpp"
+#include "commands/usb_recording.hpp"
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "progress_bar.hpp"
@@ -36,6 +37,10 @@ void record(const RecordArguments& arguments) {
     record_wall(arguments);
     return;
   }
+  if (arguments.output.empty()) {
+    record_usb(arguments);
+    return;
+  }
   const Config config = make_config(arguments.config);
   const RigOptions options = rig_options(arguments.rig, config);
   load_sensor_drivers();  // changes the working directory: before the first thread
@@ -50,6 +55,10 @@ void record(const RecordArguments& arguments) {
   ProgressBar bar;
   std::optional<Clock::time_point> begin;
   int done = 0;
+  std::optional<UsbRecording> usb;
+  if (!arguments.usb.empty()) {
+    usb.emplace(sensor, arguments);
+  }
   for (const std::int64_t position :
        stop_positions(turntable.position(), steps, arguments.snapshots)) {
     bar.show(done++, arguments.snapshots, "recording");
@@ -67,6 +76,9 @@ void record(const RecordArguments& arguments) {
     }
   }
   writer.commit();
+  if (usb) {
+    usb->write();
+  }
 }
 
 }  // namespace octurn

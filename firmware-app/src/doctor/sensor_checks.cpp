@@ -78,11 +78,13 @@ Finding check_lost_frames(const SensorSample& sample, std::string_view board) {
   const auto dropped = static_cast<int>(packets.dropped_frames);
   const int lost = std::max(missing, dropped);
   const int all = static_cast<int>(sample.times.size()) + lost;
+  const auto partial = static_cast<int>(packets.partial_frames);
   const std::string measured =
-      std::to_string(lost) + " of " + std::to_string(all) +
-      (sample.packets ? ", " + std::to_string(packets.partial_frames) + " more in part; " +
-                            rounded(100 * packets.lost_share(), 1) + " % of the packets lost"
-                      : "");
+      sample.packets
+          ? std::to_string(std::max(all - lost - partial, 0)) + " of " + std::to_string(all) +
+                " whole, " + std::to_string(partial) + " in part, " + std::to_string(lost) +
+                " lost; " + rounded(100 * packets.lost_share(), 1) + " % of the packets lost"
+          : std::to_string(lost) + " of " + std::to_string(all);
   const auto is_many = [&](int frames) { return 50 * frames > all; };
   if (2 * dropped > all) {
     return lost_frames.fault(measured, advice_on_losses(board));

@@ -15,6 +15,7 @@
 #include "sensor/depth_sensor.hpp"
 #include "sensor/openni_library.hpp"
 #include "sensor/openni_stream.hpp"
+#include "sensor/packet_logger.hpp"
 
 namespace octurn {
 namespace {
@@ -82,7 +83,7 @@ std::vector<std::size_t> take_lost(DepthFrame& frame) {
   return lost;
 }
 
-class OpenNiSensor final : public DepthSensor {
+class OpenNiSensor final : public DepthSensor, public PacketLogger {
  public:
   explicit OpenNiSensor(const std::string& uri) {
     load_sensor_drivers();
@@ -100,6 +101,8 @@ class OpenNiSensor final : public DepthSensor {
   std::optional<TimedFrame> read(const std::stop_token& stop) override;
   std::optional<Tilt> tilt() const override;
   std::optional<PacketCounts> packet_counts() const override;
+  bool log_packets(int count) override;
+  std::vector<UsbPacket> take_logged_packets() override;
   void show_angle(double angle) override { simulate(platform_angle_property, angle); }
   void show_wall(std::optional<double> distance) override {
     simulate(wall_property, distance.value_or(0));
@@ -192,6 +195,21 @@ std::string OpenNiSensor::serial() const {
 
 std::optional<PacketCounts> OpenNiSensor::packet_counts() const {
   return property_of<PacketCounts>(device_, packet_counts_property);
+}
+
+bool OpenNiSensor::log_packets(int count) {
+  return device_.isPropertySupported(usb_log_property) &&
+         device_.setProperty(usb_log_property, count) == openni::STATUS_OK;
+}
+
+std::vector<UsbPacket> OpenNiSensor::take_logged_packets() {
+  std::vector<UsbPacket> packets(max_logged_packets);
+  int size = static_cast<int>(packets.size() * sizeof packets[0]);
+  if (device_.getProperty(usb_log_property, packets.data(), &size) != openni::STATUS_OK) {
+    return {};
+  }
+  packets.resize(static_cast<std::size_t>(size) / sizeof packets[0]);
+  return packets;
 }
 
 void OpenNiSensor::simulate(int property, double value) {

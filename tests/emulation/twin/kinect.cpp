@@ -12,6 +12,7 @@
 //   speed FACTOR              sets the frame rate as a multiple of 30 a second
 //   lose PERIOD FIRST COUNT   drops COUNT packets from FIRST on in every PERIOD-th frame; 1 0 0:
 //   none
+//   drop SHARE                drops packets at random, so many of them all; 0: none
 
 #include <arpa/inet.h>
 #include <fcntl.h>
@@ -228,6 +229,10 @@ class TwinKinect {
       kinect_.loss_period = period;
       kinect_.first_lost = first;
       kinect_.lost_packets = count;
+    } else if (verb == "drop") {
+      double share = 0;
+      words >> share;
+      kinect_.random_loss = share;
     } else if (verb == "frames") {
       return std::to_string(kinect_.frames_sent) + " " + std::to_string(kinect_.frames_damaged);
     } else {
@@ -275,8 +280,8 @@ class TwinKinect {
   Control& control_;
   View view_;
   EmulatedKinect kinect_;
-  Camera camera_{kinect_,
-                 [this](int frame) { return view_.readings(control_.ask_angle(), frame); }};
+  EmulatedCamera camera_{kinect_,
+                         [this](int frame) { return view_.readings(control_.ask_angle(), frame); }};
   std::vector<std::unique_ptr<UsbipDevice>> devices_;
   unsigned device_number_ = 0;
 };

@@ -8,7 +8,7 @@ namespace {
 
 constexpr std::size_t header_bytes = 12;
 constexpr std::size_t packet_bytes = 1748;
-constexpr std::size_t frame_bytes = Camera::pixels * 11 / 8;
+constexpr std::size_t frame_bytes = EmulatedCamera::pixels * 11 / 8;
 
 void put16(std::span<std::uint8_t> to, std::size_t at, std::uint16_t value) {
   to[at] = static_cast<std::uint8_t>(value & 0xFFU);
@@ -21,12 +21,12 @@ std::uint16_t get16(std::span<const std::uint8_t> from, std::size_t at) {
 }
 
 /// Packs readings into 11 bits each, the first in the most significant bits.
-std::vector<std::uint8_t> packed(std::span<const Camera::Reading> readings) {
+std::vector<std::uint8_t> packed(std::span<const EmulatedCamera::Reading> readings) {
   std::vector<std::uint8_t> bytes;
   bytes.reserve(frame_bytes);
   std::uint32_t bits = 0;
   unsigned held = 0;
-  for (const Camera::Reading reading : readings) {
+  for (const EmulatedCamera::Reading reading : readings) {
     bits = bits << 11U | (reading & 0x7FFU);
     for (held += 11; held >= 8;) {
       held -= 8;
@@ -38,7 +38,7 @@ std::vector<std::uint8_t> packed(std::span<const Camera::Reading> readings) {
 
 }  // namespace
 
-bool Camera::command(std::span<const std::uint8_t> message) {
+bool EmulatedCamera::command(std::span<const std::uint8_t> message) {
   if (message.size() < 8 || message[0] != 'G' || message[1] != 'M' ||
       message.size() != 8 + std::size_t{2} * get16(message, 2)) {
     return false;
@@ -53,7 +53,7 @@ bool Camera::command(std::span<const std::uint8_t> message) {
   return true;
 }
 
-std::vector<std::uint8_t> Camera::take_reply() {
+std::vector<std::uint8_t> EmulatedCamera::take_reply() {
   if (not_ready_ > 0) {
     --not_ready_;
     return {};
@@ -70,8 +70,8 @@ std::vector<std::uint8_t> Camera::take_reply() {
   return std::exchange(reply_, {});
 }
 
-std::vector<std::uint8_t> Camera::answer(std::uint16_t command,
-                                         std::span<const std::uint8_t> body) {
+std::vector<std::uint8_t> EmulatedCamera::answer(std::uint16_t command,
+                                                 std::span<const std::uint8_t> body) {
   const bool is_1414 = kinect_.model == KinectModel::k1414;
   std::vector<std::uint8_t> reply(2);
   switch (command) {
@@ -104,7 +104,7 @@ std::vector<std::uint8_t> Camera::answer(std::uint16_t command,
   return reply;
 }
 
-void Camera::write_register(std::uint16_t address, std::uint16_t value) {
+void EmulatedCamera::write_register(std::uint16_t address, std::uint16_t value) {
   registers_[address] = value;
   if (address == 0x05 && value != 0) {
     ++kinect_.video_starts;
@@ -118,7 +118,7 @@ void Camera::write_register(std::uint16_t address, std::uint16_t value) {
       registers_.contains(0x02EF) && registers_[0x02EF] == 0 && registers_[0x15] == 7;
 }
 
-int Camera::next_packet(std::span<std::uint8_t> packet) {
+int EmulatedCamera::next_packet(std::span<std::uint8_t> packet) {
   if (!kinect_.depth_on || kinect_.silent) {
     return 0;
   }
@@ -155,18 +155,22 @@ int Camera::next_packet(std::span<std::uint8_t> packet) {
   return static_cast<int>(header_bytes + bytes);
 }
 
-void Camera::begin_frame() {
+void EmulatedCamera::begin_frame() {
   ++frame_;
   frame_is_damaged_ = false;
   packed_ = packed(frames_(frame_));
 }
 
 /// Whether a packet of this frame is among those that this frame or the previous one loses, or is
-/// lost by chance or in a burst.
-bool Camera::is_lost(int packet) {
+/// lost by chance, in a burst or in a recording.
+bool EmulatedCamera::is_lost(int packet) {
   constexpr int burst_period = 7283;  // a second has 7260: each burst hits frames elsewhere
   const bool in_burst = ++packets_ % burst_period < kinect_.burst;
   if (in_burst || std::uniform_real_distribution()(random_) < kinect_.random_loss) {
+    return true;
+  }
+  const auto sent = static_cast<std::size_t>(frame_) * packets_in_frame;
+  if (!losses_.empty() && losses_[(sent + static_cast<std::size_t>(packet)) % losses_.size()]) {
     return true;
   }
   const auto loses = [this](int frame, int number) {
@@ -176,10 +180,10 @@ bool Camera::is_lost(int packet) {
   return loses(frame_, packet) || loses(frame_ - 1, packet + packets_in_frame);
 }
 
-Camera::Frames over_and_over(std::span<const Camera::Reading> frames) {
+EmulatedCamera::Frames over_and_over(std::span<const EmulatedCamera::Reading> frames) {
   return [frames](int frame) {
-    return frames.subspan(static_cast<std::size_t>(frame) * Camera::pixels % frames.size(),
-                          Camera::pixels);
+    return frames.subspan(static_cast<std::size_t>(frame) * EmulatedCamera::pixels % frames.size(),
+                          EmulatedCamera::pixels);
   };
 }
 

@@ -16,7 +16,7 @@ namespace octurn {
 
 /// The USB side of a Kinect v1's camera: commands and replies by control transfers, and depth in
 /// isochronous packets, one for each microframe of 125 us.
-class Camera {
+class EmulatedCamera {
  public:
   using Reading = std::uint16_t;
   static constexpr std::size_t pixels = std::size_t{640} * 480;
@@ -25,7 +25,9 @@ class Camera {
   static constexpr int packets_in_frame = 242;  // of 1748 bytes, the last of 1132
   static constexpr int microframes_in_frame = 267;
 
-  Camera(EmulatedKinect& kinect, Frames frames) : kinect_(kinect), frames_(std::move(frames)) {}
+  /// @param losses  whether each packet since the stream began is lost, over and over
+  EmulatedCamera(EmulatedKinect& kinect, Frames frames, std::vector<bool> losses = {})
+      : kinect_(kinect), frames_(std::move(frames)), losses_(std::move(losses)) {}
 
   /// Accepts a command. @return false if the message is no command
   bool command(std::span<const std::uint8_t> message);
@@ -45,6 +47,7 @@ class Camera {
 
   EmulatedKinect& kinect_;
   Frames frames_;
+  std::vector<bool> losses_;
   std::map<std::uint16_t, std::uint16_t> registers_ = {};
   std::vector<std::uint8_t> reply_ = {};
   std::vector<std::uint8_t> reply_before_ = {};
@@ -59,6 +62,6 @@ class Camera {
 };
 
 /// Repeats a sequence of frames. @param frames  readings of one or more whole frames
-Camera::Frames over_and_over(std::span<const Camera::Reading> frames);
+EmulatedCamera::Frames over_and_over(std::span<const EmulatedCamera::Reading> frames);
 
 }  // namespace octurn

@@ -27,6 +27,7 @@ struct EmulatedKinect {
   std::atomic<double> speed = 1;  // as a multiple of 30 frames a second
 
   std::atomic<bool> silent = false;
+  std::atomic<bool> is_hasty = false;  // what no transfer waits for is lost, as in the world
   std::atomic<int> interruptions = 0;  // of the next waits for events, as by signals
   // Every `loss_period`-th frame loses `lost_packets` packets from `first_lost` on; the loss may
   // extend into the next frame.
@@ -45,11 +46,14 @@ struct EmulatedKinect {
   std::atomic<bool> camera_hangs = false;  // answers no control transfer
   std::atomic<bool> motor_hangs = false;
   std::atomic<bool> keeps_transfers = false;  // does not give back cancelled ones
-  std::atomic<int> audio_resets = 0;          // after which a real one vanishes for 2 s
+  std::atomic<int> audio_resets = 0;
+  // Times that the bus is still listed without the audio part, which vanishes after a reset.
+  std::atomic<int> audio_absences = 0;
 
   std::atomic<int> frames_sent = 0;
   std::atomic<int> frames_damaged = 0;
   std::atomic<int> video_starts = 0;
+  std::atomic<int> stream_priority = 0;  // real-time, of the thread that takes the packets
   std::atomic<bool> near_mode = false;
   std::atomic<bool> depth_on = false;
 };

@@ -8,10 +8,13 @@
 #include <deque>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "kinect/emulated/camera.hpp"
 #include "kinect/emulated/mapped_file.hpp"
 #include "kinect/emulated/usb_parts.hpp"
+#include "octurn/file.hpp"
+#include "rig/usb_log.hpp"
 
 // The types that libusb's headers leave incomplete: devices, and a program's view of the bus.
 
@@ -27,15 +30,21 @@ struct libusb_device_handle {
 
 /// A program's view of the bus. The driver uses each from one thread at a time.
 struct libusb_context {
-  /// The Kinect of the folder in the environment variable.
+  /// The Kinect of the folder in the environment variable. A file `usb` in it is a recording of
+  /// `octurn record --usb`, whose losses it repeats.
   struct Bus {
     explicit Bus(const std::filesystem::path& folder)
-        : control(folder / "kinect"), frames(folder / "frames") {}
+        : control(folder / "kinect"),
+          frames(folder / "frames"),
+          losses(octurn::lost_packets(octurn::parse_usb_log(
+              octurn::read_regular_file(folder / "usb", octurn::max_usb_log_bytes)
+                  .value_or("octurn-usb 1\nend\n")))) {}
     octurn::MappedFile control;
     octurn::MappedFile frames;
+    std::vector<bool> losses;
     octurn::EmulatedKinect& kinect = control.as<octurn::EmulatedKinect>();
-    octurn::Camera camera =
-        octurn::Camera(kinect, octurn::over_and_over(frames.values<octurn::Camera::Reading>()));
+    octurn::EmulatedCamera camera = octurn::EmulatedCamera(
+        kinect, octurn::over_and_over(frames.values<octurn::EmulatedCamera::Reading>()), losses);
   };
 
   std::optional<Bus> bus = {};

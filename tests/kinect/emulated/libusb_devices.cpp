@@ -31,6 +31,15 @@ bool hangs(const libusb_device_handle& handle) {
          (part == KinectPart::motor && kinect.motor_hangs);
 }
 
+/// Whether a part is on the bus now, as its listing shows it.
+bool is_there(KinectPart part, EmulatedKinect& kinect) {
+  if (part == KinectPart::audio && kinect.audio_absences > 0) {
+    --kinect.audio_absences;
+    return false;
+  }
+  return part != KinectPart::motor || kinect.model == KinectModel::k1414;
+}
+
 /// Waits for a device that hangs. @param timeout  milliseconds; 0: for ever, as libusb does
 int wait_in_vain(const libusb_device_handle& handle, unsigned timeout) {
   using std::chrono::steady_clock;
@@ -66,9 +75,7 @@ ssize_t libusb_get_device_list(libusb_context* context, libusb_device*** list) {
   ssize_t count = 0;
   if (context->bus && context->bus->kinect.plugged) {
     for (libusb_device& device : context->devices) {
-      const bool is_there =
-          device.part != KinectPart::motor || context->bus->kinect.model == KinectModel::k1414;
-      if (is_there) {
+      if (is_there(device.part, context->bus->kinect)) {
         devices[count++] = &device;
       }
     }
@@ -137,10 +144,11 @@ void libusb_close(libusb_device_handle* handle) {
 
 libusb_device* libusb_get_device(libusb_device_handle* handle) { return handle->device; }
 
-int libusb_get_string_descriptor_ascii(libusb_device_handle* /*handle*/, std::uint8_t /*index*/,
+int libusb_get_string_descriptor_ascii(libusb_device_handle* handle, std::uint8_t /*index*/,
                                        unsigned char* data, int length) {
-  const auto count = octurn::kinect_serial_number.copy(reinterpret_cast<char*>(data),
-                                                       static_cast<std::size_t>(length) - 1);
+  const EmulatedKinect& kinect = handle->device->context->bus->kinect;
+  const auto count = octurn::usb_serial_number(handle->device->part, kinect.model)
+                         .copy(reinterpret_cast<char*>(data), static_cast<std::size_t>(length) - 1);
   data[count] = 0;
   return static_cast<int>(count);
 }
@@ -156,7 +164,10 @@ int libusb_set_interface_alt_setting(libusb_device_handle* /*handle*/, int /*num
 }
 int libusb_reset_device(libusb_device_handle* handle) {
   EmulatedKinect& kinect = handle->device->context->bus->kinect;
-  kinect.audio_resets += handle->device->part == KinectPart::audio ? 1 : 0;
+  if (handle->device->part == KinectPart::audio) {
+    ++kinect.audio_resets;
+    kinect.audio_absences = 20;
+  }
   return 0;
 }
 

@@ -1,14 +1,18 @@
 // The transfers of the libusb replacement, which deliver depth in real time.
 
 #include <libusb.h>
+#include <sched.h>
 #include <sys/time.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cstdlib>
 #include <deque>
+#include <ratio>
 #include <span>
 #include <thread>
+#include <utility>
 
 #include "kinect/emulated/libusb_context.hpp"
 
@@ -27,9 +31,10 @@ steady_clock::time_point due(const libusb_context& context) {
 }
 
 /// Completes the oldest transfer: with depth packets on endpoint 0x82, with empty ones on others.
-void complete(libusb_context& context) {
-  libusb_transfer* transfer = context.waiting.front();
-  context.waiting.pop_front();
+/// @param waiting  not empty
+void complete(libusb_context& context, std::deque<libusb_transfer*>& waiting) {
+  libusb_transfer* transfer = waiting.front();
+  waiting.pop_front();
   context.microframes += transfer->num_iso_packets;
   transfer->status = LIBUSB_TRANSFER_COMPLETED;
   std::uint8_t* buffer = transfer->buffer;
@@ -45,6 +50,33 @@ void complete(libusb_context& context) {
   transfer->callback(transfer);
 }
 
+/// Completes all transfers of a program that came too late for the last of them. What the camera
+/// sent meanwhile is lost. Real time begins anew when they are submitted again.
+/// @return whether it came too late
+bool complete_late(libusb_context& context) {
+  using Microframes = std::chrono::duration<double, std::ratio<1, 8000>>;
+  std::int64_t end = context.microframes;
+  for (const libusb_transfer* transfer : context.waiting) {
+    end += transfer->num_iso_packets;
+  }
+  const Microframes passed = steady_clock::now() - context.begin;
+  const auto missed = static_cast<std::int64_t>(passed.count() * context.bus->kinect.speed) - end;
+  if (missed <= 0) {
+    return false;
+  }
+  std::deque<libusb_transfer*> late = std::exchange(context.waiting, {});
+  while (!late.empty()) {
+    complete(context, late);
+  }
+  std::array<std::uint8_t, octurn::max_iso_packet_bytes> nowhere = {};
+  for (std::int64_t i = 0; i < missed; ++i) {
+    context.bus->camera.next_packet(nowhere);
+  }
+  context.begin = steady_clock::now();
+  context.microframes = 0;
+  return true;
+}
+
 /// Ends all transfers with a status. @return whether there were any
 bool give_back(std::deque<libusb_transfer*>& transfers, libusb_transfer_status status) {
   const bool any = !transfers.empty();
@@ -57,8 +89,8 @@ bool give_back(std::deque<libusb_transfer*>& transfers, libusb_transfer_status s
   return any;
 }
 
-/// Ends the transfers that are due. Unlike a real device, the emulation never drops data for a
-/// program that a busy machine delays: losses are up to the tests.
+/// Ends the transfers that are due. Unlike a real device, the emulation drops data for a program
+/// that a busy machine delays only if it `is_hasty`: losses are up to the tests.
 /// @return whether any transfer ended
 bool handle_events(libusb_context& context) {
   const bool keeps = context.bus && context.bus->kinect.keeps_transfers;
@@ -74,7 +106,9 @@ bool handle_events(libusb_context& context) {
   if (due(context) > steady_clock::now()) {
     return false;
   }
-  complete(context);
+  if (!context.bus->kinect.is_hasty || !complete_late(context)) {
+    complete(context, context.waiting);
+  }
   return true;
 }
 
@@ -118,6 +152,10 @@ int libusb_handle_events_timeout(libusb_context* context, timeval* timeout) {
   if (context->bus && context->bus->kinect.interruptions > 0) {
     --context->bus->kinect.interruptions;
     return LIBUSB_ERROR_INTERRUPTED;
+  }
+  sched_param parameters = {};
+  if (context->bus && ::sched_getparam(0, &parameters) == 0) {
+    context->bus->kinect.stream_priority = parameters.sched_priority;
   }
   constexpr auto tick = std::chrono::milliseconds(5);
   const auto deadline = steady_clock::now() + std::chrono::seconds(timeout->tv_sec) +

@@ -87,7 +87,7 @@ std::optional<Bytes> descriptor(KinectPart part, std::uint16_t value, KinectMode
         case 2:
           return string_descriptor("Microsoft");
         case 3:
-          return string_descriptor(kinect_serial_number);
+          return string_descriptor(usb_serial_number(part, model));
         default:
           return std::nullopt;
       }
@@ -114,8 +114,13 @@ std::uint16_t usb_release(KinectModel model) {
   return model == KinectModel::k1414 ? 0x010B : 0x0114;
 }
 
+std::string_view usb_serial_number(KinectPart part, KinectModel model) {
+  const bool has_none = part == KinectPart::camera && model != KinectModel::k1414;
+  return has_none ? "0000000000000000" : kinect_serial_number;
+}
+
 std::optional<std::size_t> vendor_request(KinectPart part, const UsbSetup& setup,
-                                          EmulatedKinect& kinect, Camera& camera,
+                                          EmulatedKinect& kinect, EmulatedCamera& camera,
                                           std::span<std::uint8_t> data) {
   if (part == KinectPart::motor && setup.is_in() && setup.request == 0x32) {
     return reply_of_motor(kinect, data);

@@ -21,6 +21,9 @@ inline constexpr std::uint16_t microsoft = 0x045E;
 std::uint16_t usb_product(KinectPart part, KinectModel model);
 std::uint16_t usb_release(KinectModel model);
 
+/// Only the camera of model 1414 has a serial number of its own; the others have zeros.
+std::string_view usb_serial_number(KinectPart part, KinectModel model);
+
 /// The largest packet of an isochronous endpoint: two transactions of 960 bytes a microframe.
 inline constexpr int max_iso_packet_bytes = 1920;
 
@@ -39,7 +42,7 @@ struct UsbSetup {
 /// @param data  the request's data, or the buffer for its reply
 /// @return bytes transferred; nothing if the device stalls, as on an unsupported request
 std::optional<std::size_t> vendor_request(KinectPart part, const UsbSetup& setup,
-                                          EmulatedKinect& kinect, Camera& camera,
+                                          EmulatedKinect& kinect, EmulatedCamera& camera,
                                           std::span<std::uint8_t> data);
 
 /// Answers a standard request (USB 2.0, 9.4), as a host sends it to enumerate devices.

@@ -22,7 +22,8 @@ class UsbipDevice {
   using Clock = std::chrono::steady_clock;
 
   /// @param socket  a stream socket; the device is plugged in while both ends are open
-  UsbipDevice(KinectPart part, EmulatedKinect& kinect, Camera& camera, FileDescriptor socket)
+  UsbipDevice(KinectPart part, EmulatedKinect& kinect, EmulatedCamera& camera,
+              FileDescriptor socket)
       : part_(part), kinect_(kinect), camera_(camera), socket_(std::move(socket)) {}
 
   int socket() const { return socket_.number(); }
@@ -58,7 +59,7 @@ class UsbipDevice {
 
   KinectPart part_;
   EmulatedKinect& kinect_;
-  Camera& camera_;
+  EmulatedCamera& camera_;
   FileDescriptor socket_;
   std::deque<Transfer> waiting_ = {};
   Clock::time_point over_ = {};  // end of the last completed transfer

@@ -1,0 +1,93 @@
+#include "commands/usb_recording.hpp"
+
+#include <sys/utsname.h>
+
+#include <chrono>
+#include <iomanip>
+#include <iostream>
+#include <string>
+#include <vector>
+
+#include "doctor/system_files.hpp"
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "rig/usb_log.hpp"
+#include "signal_stop.hpp"
+#include "version.hpp"
+
+namespace octurn {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+/// What its reader has to know of the machine; nothing that identifies it.
+std::vector<std::string> notes_on_machine(const DepthSensor& sensor) {
+  utsname system = {};
+  ::uname(&system);
+  std::vector<std::string> notes{"Octurn " + std::string(version()), sensor.name(),
+                                 std::string("Linux ") + system.release + " " + system.machine};
+  if (auto board = first_line("/proc/device-tree/model")) {
+    notes.push_back(board->substr(0, board->find('\0')));
+  }
+  return notes;
+}
+
+/// One line, such as "298 whole frames, 2 in part, 0 dropped; 35 of 72600 packets lost (0.05 %)".
+void print(const PacketCounts& counts, std::size_t microframes) {
+  std::cout << counts.whole_frames << " whole frames, " << counts.partial_frames << " in part, "
+            << counts.dropped_frames << " dropped; " << counts.lost_packets << " of "
+            << counts.packets << " packets lost (" << std::fixed << std::setprecision(2)
+            << 100 * counts.lost_share() << " %); " << microframes << " microframes recorded"
+            << std::endl;
+}
+
+/// Reads a frame. A sensor that sends none is what a recording of its USB is for.
+/// @return false if stopped first
+bool read_or_wait(DepthSensor& sensor, const std::stop_token& stop) try {
+  return sensor.read(stop).has_value();
+} catch (const Error& error) {
+  if (error.code() != ErrorCode::sensor_silent) {
+    throw;
+  }
+  return true;
+}
+
+}  // namespace
+
+UsbRecording::UsbRecording(DepthSensor& sensor, const RecordArguments& arguments)
+    : sensor_(sensor),
+      logger_(dynamic_cast<PacketLogger*>(&sensor)),
+      file_(arguments.usb),
+      before_(sensor.packet_counts()) {
+  const AtomicFile probe(file_);  // its destructor removes the temporary file
+  if (logger_ == nullptr || !logger_->log_packets(arguments.usb_seconds * microframes_per_second)) {
+    throw Error(ErrorCode::sensor_other, "--usb: packets of this sensor cannot be recorded",
+                "Only those of a Kinect can: --sensor kinect://.");
+  }
+}
+
+void UsbRecording::write() {
+  const std::vector<UsbPacket> packets = logger_->take_logged_packets();
+  const auto after = sensor_.packet_counts();
+  write_file(file_, to_usb_log_text(packets, notes_on_machine(sensor_)));
+  print(after && before_ ? *after - *before_ : PacketCounts(), packets.size());
+}
+
+void record_usb(const RecordArguments& arguments) {
+  const Config config = make_config(arguments.config);
+  const RigOptions options = rig_options(arguments.rig, config);
+  load_sensor_drivers();  // changes the working directory: before the first thread
+  const SignalStop signal;
+  const std::stop_token stop = signal.token();
+  Rig rig(options);
+  UsbRecording recording(rig.sensor(), arguments);
+  const auto end = Clock::now() + std::chrono::seconds(arguments.usb_seconds);
+  while (Clock::now() < end) {
+    if (!read_or_wait(rig.sensor(), stop)) {
+      throw_stopped("no recording was written");
+    }
+  }
+  recording.write();
+}
+
+}  // namespace octurn

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+
+#include "commands/commands.hpp"
+#include "rig/packet_counts.hpp"
+#include "sensor/depth_sensor.hpp"
+#include "sensor/packet_logger.hpp"
+
+namespace octurn {
+
+/// Records what comes from a Kinect over USB, while somebody reads its frames.
+class UsbRecording {
+ public:
+  /// Begins. @param sensor  outlives this object
+  /// @throws Error "sensor-other"  if the sensor is no Kinect
+  /// @throws Error "write-failed"  if the file could not be written later
+  UsbRecording(DepthSensor& sensor, const RecordArguments& arguments);
+
+  /// Writes the file, and one line to standard output that sums it up.
+  void write();
+
+ private:
+  DepthSensor& sensor_;
+  PacketLogger* logger_;  // the same sensor
+  std::filesystem::path file_;
+  std::optional<PacketCounts> before_;
+};
+
+}  // namespace octurn

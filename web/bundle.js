@@ -17,7 +17,7 @@ const script = /<script type="module" src="([^"]+)"><\/script>/;
 const preload = /^ *<link rel="modulepreload"[^>]*>\n/gm;
 const indentation = /^ +/gm;  // dropped from documents with a script, none of which has preformatted text
 const packed = /\.(html|css|js|json|svg|txt|webmanifest)$/;
-const {isLater} = await import(pathToFileURL(join(source, 'text_parts.js')));
+const {isLater} = await import(pathToFileURL(join(source, 'base/text_parts.js')));
 
 /** Splits each language into two files: the texts for the page's first view, and the rest. */
 const splitTexts = {name: 'texts', setup: ({onLoad, onResolve}) => {

@@ -1,6 +1,6 @@
 // Shows openapi.json as a page for programmers.
 
-import {copyOf, element, part, setText, show} from './dom.js';
+import {copyOf, element, part, setText, show} from './base/dom.js';
 import {answersOf, bodyOf, operationsOf, typeText} from './openapi.js';
 
 /** @param {Element} list @param {string} term @param {string} text */

@@ -1,27 +1,27 @@
 // Polls the scanner, and handles the page's controls.
 
-import * as api from './api.js';
-import {seeStatus, watchAppliance} from './appliance.js';
-import * as bin from './bin.js';
-import {watchCamera} from './camera.js';
-import {seeNewest, watchSteps} from './checklist.js';
-import {element} from './dom.js';
-import * as events from './events.js';
-import {prepareForm} from './form.js';
+import * as api from './api/api.js';
+import {seeStatus, watchAppliance} from './scanner/appliance.js';
+import * as bin from './scan/bin.js';
+import {watchCamera} from './scan/camera.js';
+import {seeNewest, watchSteps} from './scanner/checklist.js';
+import {element} from './base/dom.js';
+import * as events from './base/events.js';
+import {prepareForm} from './scan/form.js';
 import {asked, change, state} from './page.js';
 import {here, preparePlaces, showPlace} from './places.js';
-import {cancel, end, pause, rename, resume, start} from './scan_actions.js';
-import {prepareStage} from './stage.js';
+import {cancel, end, pause, rename, resume, start} from './scan/scan_actions.js';
+import {prepareStage} from './scan/stage.js';
 import * as states from './state.js';
-import {awaitTexts, fillTexts, language} from './texts.js';
-import {seeWarnings} from './warnings.js';
+import {awaitTexts, fillTexts, language} from './base/texts.js';
+import {seeWarnings} from './scanner/warnings.js';
 
 /** Fetches the builds of the scan in view, if they are not known yet. @param {states.State} now */
 async function missingBuilds(now) {
   if (!states.areBuildsStale(now)) {
     return null;
   }
-  const [page, requests] = await Promise.all([import('./scan_page.js'), import('./api_builds.js'), awaitTexts()]);  // including the reasons of verdicts
+  const [page, requests] = await Promise.all([import('./scan/scan_page.js'), import('./api/api_builds.js'), awaitTexts()]);  // including the reasons of verdicts
   page.prepare();
   const scan = /** @type {string} */ (now.selected);
   return {scan, list: await requests.builds(scan)};

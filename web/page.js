@@ -1,11 +1,11 @@
 // The page's state and its changes. Requests to the scanner are made one at a time.
 
-import * as api from './api.js';
+import * as api from './api/api.js';
 import {here, titleAt} from './places.js';
 import {screenOf} from './screen.js';
-import {renderStage} from './stage.js';
+import {renderStage} from './scan/stage.js';
 import * as states from './state.js';
-import {text} from './texts.js';
+import {text} from './base/texts.js';
 import {render} from './view.js';
 
 export let state = states.initial;

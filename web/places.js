@@ -1,19 +1,19 @@
 // The places of the page: Scan, Library and Scanner; Calibrate and Settings are parts of Scanner. Each but the first has the address
 // '#' and its name, and a module and an HTML fragment that are fetched at the first visit.
 
-import {element, setText, show} from './dom.js';
-import {fetchFragment} from './fragment.js';
-import {text} from './texts.js';
+import {element, setText, show} from './base/dom.js';
+import {fetchFragment} from './base/fragment.js';
+import {text} from './base/texts.js';
 
 const first = 'scan';
 
 /** @type {Record<string, {title: string, load: () => Promise<{prepare: () => void}>, piece?: string}>} piece: the id of the fragment's
  * container and its file's name; by default those of the whole place */
 const others = {
-  library: {title: 'places.library', load: () => import('./library_page.js')},
-  scanner: {title: 'places.scanner', load: () => import('./scanner_page.js'), piece: 'doctor'},
-  calibrate: {title: 'places.calibrate', load: () => import('./calibrate.js')},
-  settings: {title: 'places.settings', load: () => import('./settings_page.js')},
+  library: {title: 'places.library', load: () => import('./library/library_page.js')},
+  scanner: {title: 'places.scanner', load: () => import('./scanner/scanner_page.js'), piece: 'doctor'},
+  calibrate: {title: 'places.calibrate', load: () => import('./scanner/calibrate.js')},
+  settings: {title: 'places.settings', load: () => import('./scanner/settings_page.js')},
 };
 
 const betweenAttempts = 2000;  // milliseconds between attempts to load a place

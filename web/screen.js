@@ -1,19 +1,19 @@
 // The page's view model. Pure: state in, texts and choices out. view.js renders them.
 
-import {asShown, buildShown, buildsOf, isBuildBusy, isGoing, pictureUrl, runOf} from './builds.js';
-import * as format from './format.js';
-import {found, pictureOf} from './library.js';
-import {isPartOfAnother, posesOf} from './poses.js';
-import {isBuilding, phaseText, progressOf} from './progress.js';
-import {actionOf, badgeOf, verdictOf} from './quality.js';
+import {asShown, buildShown, buildsOf, isBuildBusy, isGoing, pictureUrl, runOf} from './scan/builds.js';
+import * as format from './base/format.js';
+import {found, pictureOf} from './library/library.js';
+import {isPartOfAnother, posesOf} from './scan/poses.js';
+import {isBuilding, phaseText, progressOf} from './scan/progress.js';
+import {actionOf, badgeOf, verdictOf} from './scan/quality.js';
 import {isAway, running, scanOf, unfinished} from './state.js';
-import {text, translated} from './texts.js';
-import {refusalText} from './wording.js';
+import {text, translated} from './base/texts.js';
+import {refusalText} from './base/wording.js';
 
 /** @typedef {import('./state.js').State} State */
-/** @typedef {import('./api.js').Scan} Scan */
-/** @typedef {import('./api.js').Model} Model */
-/** @typedef {import('./api.js').Device} Device */
+/** @typedef {import('./api/api.js').Scan} Scan */
+/** @typedef {import('./api/api.js').Model} Model */
+/** @typedef {import('./api/api.js').Device} Device */
 /** @typedef {'good' | 'busy' | 'warn' | 'bad' | 'idle'} Tone */
 
 /** @type {Record<Scan['state'], Tone>} */
@@ -69,6 +69,8 @@ function factsOf(scan) {
     {label: text('fact.taken'), text: scan.seconds_elapsed > 0 ? text('fact.took', {when, duration: format.duration(scan.seconds_elapsed)}) : when},
     ...poseFacts(scan),
     ...(scan.late_pulses > 0 ? [{label: text('fact.motor'), text: text('fact.late', {count: format.number(scan.late_pulses)})}] : []),
+    ...(scan.slips > 0 ? [{label: text('fact.motor'), text: text('fact.slips', {count: scan.slips}), tone: /** @type {const} */ ('warn')}] : []),
+    ...(scan.seconds_settling >= 0.1 ? [{label: text('fact.platform'), text: text('fact.swung', {time: `${format.number(scan.seconds_settling)} s`})}] : []),
   ];
   if (!model) {
     return capture;

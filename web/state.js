@@ -1,12 +1,12 @@
 // The page's state and its transitions. Pure: no network, clock or DOM. screen.js derives the view from it.
 
-import {isGoing, markOfBuilds} from './builds.js';
-import {initial as library} from './library.js';
+import {isGoing, markOfBuilds} from './scan/builds.js';
+import {initial as library} from './library/library.js';
 
-/** @typedef {import('./api.js').Status} Status */
-/** @typedef {import('./api.js').Scan} Scan */
-/** @typedef {import('./api.js').Settings} Settings */
-/** @typedef {import('./api_builds.js').Build} Build */
+/** @typedef {import('./api/api.js').Status} Status */
+/** @typedef {import('./api/api.js').Scan} Scan */
+/** @typedef {import('./api/api.js').Settings} Settings */
+/** @typedef {import('./api/api_builds.js').Build} Build */
 
 /**
  * @typedef {Object} State
@@ -20,7 +20,7 @@ import {initial as library} from './library.js';
  * @property {{scan: string, list: Build[], mark: string} | null} builds  of the scan in view
  * @property {number | null} shownBuild  the build in view; null for the scan's model
  * @property {string | null} shownReason  the verdict's reason whose places are shown
- * @property {import('./library.js').Library} library
+ * @property {import('./library/library.js').Library} library
  * @property {'camera' | 'model'} stage  content of the large picture if there is a choice
  * @property {string | null} stopping  the running scan that this page has asked to pause or to end
  * @property {boolean} isPending  whether a request is waiting for its response
@@ -198,5 +198,5 @@ export const loadsUnasked = (bytes, isHandheld) => bytes <= (isHandheld ? 20e6 :
 /** Whether a model is so large that its coarse mesh loads much sooner. @param {number} bytes  of the file */
 export const hasCoarse = (bytes) => bytes > 250e3;
 
-/** The URL of a model's coarse mesh. @param {import('./api.js').Model} model */
+/** The URL of a model's coarse mesh. @param {import('./api/api.js').Model} model */
 export const coarseUrl = ({url}) => url.replace(/Scan\.stl$/, 'coarse.stl');

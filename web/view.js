@@ -1,9 +1,9 @@
 // Renders a screen (screen.js), except the large picture (stage.js) and the form's fields (form.js).
 
-import {tickWidth, ticks} from './dial.js';
-import {element, list, part, setBadge, setText, show} from './dom.js';
-import {renderLibrary} from './library_view.js';
-import {text} from './texts.js';
+import {tickWidth, ticks} from './scan/dial.js';
+import {element, list, part, setBadge, setText, show} from './base/dom.js';
+import {renderLibrary} from './library/library_view.js';
+import {text} from './base/texts.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>} Screen */
 
@@ -62,7 +62,7 @@ function showProgress(progress) {
   }
 }
 
-/** @param {HTMLAnchorElement} link @param {import('./quality.js').Action | null} action */
+/** @param {HTMLAnchorElement} link @param {import('./scan/quality.js').Action | null} action */
 function setAction(link, action) {
   show(link, action !== null);
   setText(link, action?.text ?? '');

@@ -5,6 +5,7 @@
 #include <string>
 
 #include "support/temporary_folder.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {
@@ -145,7 +146,7 @@ TEST(ClockCheck, WantsSomebodyWhoHasSetIt) {
   EXPECT_EQ(unset.measured, "2026-11-21 12:00 UTC, not from a time server");
   EXPECT_EQ(check_clock(pi.root(), noon, true).state, State::ok);
   pi.has("run/systemd/timesync/synchronized", "");
-  EXPECT_EQ(check_clock(pi.root(), noon, false).state, State::ok);
+  EXPECT_TRUE(is_clock_synchronised(pi.root()));
 }
 
 TEST(ClockCheck, TrustsAMachineWithAClockOfItsOwn) {

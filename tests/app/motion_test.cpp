@@ -101,5 +101,15 @@ TEST(SpeedProfile, EndsAtOnceWhileItIsSlow) {
   EXPECT_FALSE(profile.brake());
 }
 
+// A rotor without a platform would follow these speeds (docs/wiring.md).
+TEST(MoveTime, OfAWholeScanIsAtMostTwentyFiveSecondsMoreThanABareRotors) {
+  const Motion bare{
+      .start_steps_per_second = 200, .top_steps_per_second = 800, .ramp_steps_per_second2 = 2000};
+  const auto scan_time = [](const Motion& motion) {
+    return 28 * move_time(motion, 22) + 8 * move_time(motion, 23);  // 36 stops, 800 steps
+  };
+  EXPECT_LE(scan_time({}) - scan_time(bare), 25);
+}
+
 }  // namespace
 }  // namespace octurn

@@ -100,7 +100,7 @@ TEST_F(ScanBinTest, EndsWhatAPowerCutLeftHalfDone) {
   }
   // Simulates a power cut before the pose was deleted, too.
   for (const auto& entry : fs::directory_iterator(bin())) {
-    if (entry.path().string().ends_with(pose.id)) {
+    if (entry.path().string().find("." + pose.id) != std::string::npos) {
       fs::rename(entry.path(), scans() / pose.id);
     }
   }
@@ -111,7 +111,7 @@ TEST_F(ScanBinTest, EndsWhatAPowerCutLeftHalfDone) {
   }
   // Simulates a power cut while the scans were being restored.
   for (const auto& entry : fs::directory_iterator(bin())) {
-    if (entry.path().string().ends_with(first.id)) {
+    if (entry.path().string().find("." + first.id) != std::string::npos) {
       fs::rename(entry.path(), scans() / first.id);
     }
   }
@@ -120,23 +120,52 @@ TEST_F(ScanBinTest, EndsWhatAPowerCutLeftHalfDone) {
   EXPECT_TRUE(store.bin().is_empty());
 }
 
+/// A clock of a test: so many days after the first of November.
+WallClock clock_at(int day, bool is_right = true) {
+  return {.now =
+              [day] {
+                return std::chrono::sys_days{std::chrono::year{2026} / 11 / 1} +
+                       std::chrono::days(day);
+              },
+          .is_right = [is_right] { return is_right; }};
+}
+
 TEST_F(ScanBinTest, LosesWhatIsThereForMoreThanThirtyDays) {
   std::string id;
   {
-    ScanStore store(folder_.path());
+    ScanStore store(folder_.path(), clock_at(0));
     id = finished(store).id;
     store.discard(id);
   }
-  const auto rename_to = [&](std::chrono::days age) {
-    const auto then =
-        std::chrono::floor<ScanTime::duration>(std::chrono::system_clock::now()) - age;
-    fs::rename(binned(), bin() / (to_scan_id(then) + "." + id));
-  };
-  rename_to(days_in_bin - std::chrono::days(1));
-  EXPECT_TRUE(ScanStore(folder_.path()).bin().find(id));
-  rename_to(days_in_bin + std::chrono::days(1));
-  EXPECT_FALSE(ScanStore(folder_.path()).bin().find(id));
+  EXPECT_TRUE(ScanStore(folder_.path(), clock_at(29)).bin().find(id));
+  EXPECT_FALSE(ScanStore(folder_.path(), clock_at(31)).bin().find(id));
   EXPECT_TRUE(fs::is_empty(bin()));
+}
+
+// A Pi without a network begins with the date of its image, and anybody may set its clock.
+TEST_F(ScanBinTest, LosesNothingByAClockThatMayBeWrong) {
+  std::string id;
+  {
+    ScanStore store(folder_.path(), clock_at(0));
+    id = finished(store).id;
+    store.discard(id);
+  }
+  EXPECT_TRUE(ScanStore(folder_.path(), clock_at(400, false)).bin().find(id));
+  EXPECT_TRUE(ScanStore(folder_.path(), clock_at(-400, false)).bin().find(id));
+}
+
+TEST_F(ScanBinTest, CountsTheDaysFromWhenTheClockWasSet) {
+  std::string id;
+  {
+    ScanStore store(folder_.path(), clock_at(-400, false));
+    id = finished(store).id;
+    store.discard(id);
+  }
+  EXPECT_TRUE(ScanStore(folder_.path(), clock_at(0)).bin().find(id)) << "deleted 400 days ago?";
+  const auto scan = ScanStore(folder_.path(), clock_at(29)).bin().find(id);
+  ASSERT_TRUE(scan);
+  EXPECT_TRUE(scan->time_is_sure);
+  EXPECT_FALSE(ScanStore(folder_.path(), clock_at(31)).bin().find(id));
 }
 
 /// Adds a file that takes that many bytes of the disk, and more for its name.

@@ -92,6 +92,21 @@ TEST_F(ScannerTest, TakesWhateverATurntableThrowsAsItsFailure) {
   EXPECT_EQ(scan(scanner, few_snapshots()).state, JobState::failed);
 }
 
+TEST_F(ScannerTest, TakesStopsAgainToWhichAWeakMotorLostSteps) {
+  RigOptions options = rig();
+  options.load = PlatformLoad{.holding_torque = 0.05, .inertia = 0.013};
+  Scanner scanner(options, {}, store_);
+  ScanSettings settings;
+  settings.snapshots = 24;
+  const Job job = scan(scanner, settings);
+  EXPECT_EQ(job.state, JobState::finished);
+  EXPECT_GT(job.times.slips, 0);
+  EXPECT_GT(job.times.settling.count(), 0) << "such a platform swings";
+  const JobTimes stored = store_.find(job.id)->times;
+  EXPECT_EQ(stored.slips, job.times.slips);
+  EXPECT_NEAR(stored.settling.count(), job.times.settling.count(), 1e-3);
+}
+
 TEST_F(ScannerTest, ShowsASensorsFaultWhateverItsCode) {
   RigOptions options = rig();
   options.open_sensor = [](const std::string&) -> std::unique_ptr<DepthSensor> {

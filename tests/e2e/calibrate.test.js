@@ -6,7 +6,7 @@ import {test} from 'node:test';
 import {complaints, overflow} from './access.js';
 import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, quick, scan, startScanner} from './scanner.js';
-import {poseOf} from '../../web/pose.js';
+import {poseOf} from '../../web/base/pose.js';
 import {measure} from '../web/mesh_file.js';
 
 // Off the simulated sensor's pose: its axis by 2 cm, its direction by 2 degrees.

@@ -5,7 +5,7 @@ import {test} from 'node:test';
 
 import {openBrowser, openPage} from './browser.js';
 import {ask, startScanner} from './scanner.js';
-import {fromSide, planOf} from '../../web/plans.js';
+import {fromSide, planOf} from '../../web/sensor/plans.js';
 
 const axisLine = (page) => page.locator('#overlay [data-line=axis]').getAttribute('d');
 

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import * as api from '../../web/api.js';
+import * as api from '../../web/api/api.js';
 
 /** Mocks fetch: it resolves to `response`, or throws it. @returns the requests made */
 function answering(t, response) {

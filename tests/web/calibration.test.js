@@ -1,10 +1,10 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import * as requests from '../../web/api_calibration.js';
-import * as texts from '../../web/calibration.js';
-import {distanceOf, distanceText} from '../../web/depth.js';
-import {errorColour} from '../../web/map_picture.js';
+import * as requests from '../../web/api/api_calibration.js';
+import * as texts from '../../web/scanner/calibration.js';
+import {distanceOf, distanceText} from '../../web/sensor/depth.js';
+import {errorColour} from '../../web/sensor/map_picture.js';
 import {calibration, turnReport} from './examples.js';
 
 const run = {kind: 'turn', state: 'running', phase: 'turning', stop: 3, stops: 24, report: null, error: null};

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {stepsOf} from '../../web/checklist.js';
+import {stepsOf} from '../../web/scanner/checklist.js';
 
 const first = {isChecked: false, isCalibrated: false, hasModel: false, isDismissed: false};
 

@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {cursorOf, edgesAt, withSide} from '../../web/clip_edges.js';
-import {fromAbove, fromSide, planOf} from '../../web/plans.js';
+import {cursorOf, edgesAt, withSide} from '../../web/sensor/clip_edges.js';
+import {fromAbove, fromSide, planOf} from '../../web/sensor/plans.js';
 
 const clip_mm = [-140, -140, 5, 140, 140, 400];
 const plan = planOf(fromSide, clip_mm, 150, 400, 260);

@@ -1,9 +1,9 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {draggedTo, handlesOf} from '../../web/clip_handles.js';
-import {pixelOf} from '../../web/overlay.js';
-import {poseOf, toSensor} from '../../web/pose.js';
+import {draggedTo, handlesOf} from '../../web/sensor/clip_handles.js';
+import {pixelOf} from '../../web/sensor/overlay.js';
+import {poseOf, toSensor} from '../../web/base/pose.js';
 
 const pose = poseOf({x_mm: 12, y_mm: -620, z_mm: 360, tilt_deg: 25, roll_deg: 2, yaw_deg: 3});
 const sensor = {width: 640, height: 480, fx: 575.8, fy: 575.8, cx: 320, cy: 240};

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {readColours} from '../../web/colours.js';
+import {readColours} from '../../web/model/colours.js';
 
 /** A PLY as the scanner writes it. @param {{colours: number[][], faces: number[][], head?: string}} model @returns {ArrayBuffer} */
 function ply({colours, faces, head = 'property uchar red\nproperty uchar green\nproperty uchar blue\n'}) {

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {progressAfter, shownOf} from '../../web/doctor.js';
+import {progressAfter, shownOf} from '../../web/scanner/doctor.js';
 
 const finding = (check, state, more = {}) => ({check, name: check, state, measured: '1 mm', advice: '', action: '', ...more});
 

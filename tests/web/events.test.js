@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {HeardStatus} from '../../web/events.js';
+import {HeardStatus} from '../../web/base/events.js';
 import {status} from './examples.js';
 
 test('what was told counts until the scanner falls silent', () => {

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {choiceOf, choicesOf, fitsOf, isOfSide, textOf, withPairs, withPoint, withStep, withoutPoint} from '../../web/fits.js';
+import {choiceOf, choicesOf, fitsOf, isOfSide, textOf, withPairs, withPoint, withStep, withoutPoint} from '../../web/scan/fits.js';
 
 const at = (/** @type {number} */ x) => [[1, 0, 0, x], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]];
 const candidates = [
@@ -9,7 +9,7 @@ const candidates = [
   {object_from_platform: at(0.2), overlap: 0.5, residual_mm: 1.2, contradiction: 0.5},
 ];
 /** @param {number | null} candidate */
-const merged = (candidate) => /** @type {import('../../web/api_poses.js').Pose} */ ({
+const merged = (candidate) => /** @type {import('../../web/api/api_poses.js').Pose} */ ({
   pose: 1, scan: 'other', state: 'finished', registration: {
     accepted: true, reason: '', overlap: 0.71, residual_mm: 0.4, contradiction: 0.01, symmetric: false, candidates, candidate,
     object_from_platform: at(0.11),

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import * as format from '../../web/format.js';
+import * as format from '../../web/base/format.js';
 
 test('bytes have three figures at most', () => {
   assert.deepEqual([0, 999, 1000, 9949, 9950, 999499, 50551684, 12.3e9].map(format.bytes),

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf, missingPart} from '../../web/lens_words.js';
+import {foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf, missingPart} from '../../web/scanner/lens_words.js';
 import {calibration} from './examples.js';
 
 const told = {fx: 682.4, fy: 682.4, cx: 409.5, cy: 307.5, k1: 0, k2: 0};

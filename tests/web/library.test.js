@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {found, initial, pictureOf, withToggled} from '../../web/library.js';
+import {found, initial, pictureOf, withToggled} from '../../web/library/library.js';
 import {finished, running} from './examples.js';
 
 const large = {...finished, model: {...finished.model, size_mm: [300, 300, 300]}};

@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {hintOf, movedShare, seenOf, steadyHint} from '../../web/live_hints.js';
-import {poseOf, toPlatform} from '../../web/pose.js';
+import {hintOf, movedShare, seenOf, steadyHint} from '../../web/sensor/live_hints.js';
+import {poseOf, toPlatform} from '../../web/base/pose.js';
 
 const sensor = {width: 640, height: 480, fx: 576, fy: 576, cx: 320, cy: 240};
 const pose = poseOf({x_mm: 0, y_mm: -620, z_mm: 360, tilt_deg: 25, roll_deg: 0, yaw_deg: 0});

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {changeOf, isAnswered, nameComplaint} from '../../web/machine.js';
+import {changeOf, isAnswered, nameComplaint} from '../../web/scanner/machine.js';
 
 const machine = {name: 'octurn', time_zone: 'Etc/UTC', error: ''};
 

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {measureText, withPoint} from '../../web/measure.js';
+import {measureText, withPoint} from '../../web/model/measure.js';
 
 test('two places are measured between, and a third one begins anew', () => {
   const [a, b, c] = [[0, 0, 0], [3, -4, 12], [1, 1, 1]];

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {smoothNormals} from '../../web/normals.js';
+import {smoothNormals} from '../../web/model/normals.js';
 
 /** The normal of a corner, as numbers from -1 to 1. */
 const at = (normals, corner) => Array.from(normals.subarray(3 * corner, 3 * corner + 3), (n) => n / 32767);

@@ -1,11 +1,11 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {isRightClock, needsClock} from '../../web/clock.js';
-import {aboutPrinter, aboutWebhook} from '../../web/outgoing.js';
-import {linesOf} from '../../web/power.js';
-import {aboutUpload, scanIn} from '../../web/send.js';
-import {kindOf, textOf} from '../../web/warning_lines.js';
+import {isRightClock, needsClock} from '../../web/scanner/clock.js';
+import {aboutPrinter, aboutWebhook} from '../../web/scanner/outgoing.js';
+import {linesOf} from '../../web/scanner/power.js';
+import {aboutUpload, scanIn} from '../../web/scan/send.js';
+import {kindOf, textOf} from '../../web/scanner/warning_lines.js';
 
 test('a printer, and how a model gets there, are told in words', () => {
   assert.equal(aboutPrinter({id: '1', name: 'Voron', kind: 'moonraker', address: 'http://voron.local:7125', has_key: true}), 'Moonraker · http://voron.local:7125');

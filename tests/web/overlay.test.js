@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {overlayOf, pixelOf} from '../../web/overlay.js';
-import {poseOf, toSensor} from '../../web/pose.js';
+import {overlayOf, pixelOf} from '../../web/sensor/overlay.js';
+import {poseOf, toSensor} from '../../web/base/pose.js';
 
 const sensor = {width: 640, height: 480, fx: 576, fy: 576, cx: 320, cy: 240};
 const clip_mm = [-140, -140, 5, 140, 140, 400];

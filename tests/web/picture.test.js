@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {brighten, colour, colourOf} from '../../web/depth.js';
-import {ticks} from '../../web/dial.js';
+import {brighten, colour, colourOf} from '../../web/sensor/depth.js';
+import {ticks} from '../../web/scan/dial.js';
 
 /** Relative luminance of sRGB (IEC 61966-2-1). */
 function luminance(rgb) {

@@ -1,8 +1,8 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {fromAbove, fromSide, isInside, placed, planOf} from '../../web/plans.js';
-import {poseOf} from '../../web/pose.js';
+import {fromAbove, fromSide, isInside, placed, planOf} from '../../web/sensor/plans.js';
+import {poseOf} from '../../web/base/pose.js';
 
 const clip_mm = [-140, -140, 5, 140, 140, 400];
 

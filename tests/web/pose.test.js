@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {differenceOf, placementOf, poseOf, toPlatform, toSensor} from '../../web/pose.js';
+import {differenceOf, placementOf, poseOf, toPlatform, toSensor} from '../../web/base/pose.js';
 
 const drawing = {x_mm: 0, y_mm: -620, z_mm: 360, tilt_deg: 25, roll_deg: 0, yaw_deg: 0};
 const crooked = {x_mm: 14, y_mm: -606.5, z_mm: 352, tilt_deg: 26.4, roll_deg: -1.4, yaw_deg: 12};

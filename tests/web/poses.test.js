@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {isPartOfAnother, posesOf} from '../../web/poses.js';
+import {isPartOfAnother, posesOf} from '../../web/scan/poses.js';
 import {initial, withStatus} from '../../web/state.js';
 import {finished, running, status} from './examples.js';
 

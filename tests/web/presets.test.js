@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {fromKept, presetOf, presets, toKept} from '../../web/presets.js';
+import {fromKept, presetOf, presets, toKept} from '../../web/scan/presets.js';
 import {settings} from './examples.js';
 
 test('each preset is known again, and what is none of them is none', () => {

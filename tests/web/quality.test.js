@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {actionOf, badgeOf, verdictOf} from '../../web/quality.js';
+import {actionOf, badgeOf, verdictOf} from '../../web/scan/quality.js';
 import {finished} from './examples.js';
 
 const judged = (verdict, reasons = [], changes = {}) => ({...finished.model, quality: {verdict, reasons}, ...changes});

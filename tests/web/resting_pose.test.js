@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {restingSide} from '../../web/resting_pose.js';
+import {restingSide} from '../../web/model/resting_pose.js';
 import {Vector3} from '../../web/three.js';
 
 /** A number in [-1, 1) that is always the same for i, and has nothing to do with that for i + 1. */

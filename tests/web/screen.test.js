@@ -186,6 +186,19 @@ test('late pulses of the motor are told, if there were any', () => {
   assert.match(motor(1234).text, /^1,234 pulses late/);
 });
 
+test('lost steps of the motor are told, if there were any', () => {
+  const motor = (slips) => screenOf(looking({...finished, slips})).details.facts.find(({label}) => label === 'Motor');
+  assert.equal(motor(0), undefined);
+  assert.match(motor(1).text, /^lost steps at 1 stop,/);
+  assert.match(motor(3).text, /^lost steps at 3 stops,/);
+});
+
+test('a platform that swung on is told, if stops waited for it', () => {
+  const platform = (seconds_settling) => screenOf(looking({...finished, seconds_settling})).details.facts.find(({label}) => label === 'Platform');
+  assert.equal(platform(0), undefined);
+  assert.match(platform(0.8).text, /up to 0.8 s longer/);
+});
+
 test('a model is judged where it is shown and where it is listed', () => {
   const quality = {verdict: 'bad', reasons: [{code: 'stops-disagree', detail: 'the stops disagree by 4.2 mm', hint: 'calibrate the rig'}]};
   const {details, rows, announcement} = screenOf(looking({...finished, model: {...finished.model, quality}}));

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
-import {formOf, leafChoices, settingsOf, stepText} from '../../web/settings.js';
+import {formOf, leafChoices, settingsOf, stepText} from '../../web/scan/settings.js';
 import {settings} from './examples.js';
 
 test('what the form shows and does not change is sent as it came', () => {

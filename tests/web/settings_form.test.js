@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {areEqual, changeOf, complaintOf, helpOf, joined, keyOf, nameOf, poseText, reasonOf, restartText, schemaAt, stepsOf, valueAt, valueText,
-  wordsOf} from '../../web/settings_form.js';
+  wordsOf} from '../../web/scanner/settings_form.js';
 
 test('a setting is found, and a change of it made, by its key', () => {
   assert.equal(valueAt({turntable: {gear_ratio: 4}}, 'turntable.gear_ratio'), 4);

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {readStl} from '../../web/stl.js';
+import {readStl} from '../../web/model/stl.js';
 import {stlOf} from './mesh_file.js';
 
 const triangles = [

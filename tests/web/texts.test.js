@@ -1,9 +1,10 @@
 import assert from 'node:assert/strict';
 import {readFile, readdir} from 'node:fs/promises';
+import {posix} from 'node:path';
 import {test} from 'node:test';
 
-import {isLater} from '../../web/text_parts.js';
-import {languageOf, languages, localeOf, text, translated} from '../../web/texts.js';
+import {isLater} from '../../web/base/text_parts.js';
+import {languageOf, languages, localeOf, text, translated} from '../../web/base/texts.js';
 
 const folder = new URL('../../web/', import.meta.url);
 const files = new Map(await Promise.all(Object.keys(languages).map(async (language) =>
@@ -11,7 +12,8 @@ const files = new Map(await Promise.all(Object.keys(languages).map(async (langua
 const english = files.get('en').texts;
 
 /** The page's sources. Pages for programmers and build scripts exist in English only. */
-const sources = (await readdir(folder)).filter((name) => /\.(js|html)$/.test(name) && !/^(bundle|interface|openapi|render_help|three|uqr)\./.test(name));
+const sources = (await readdir(folder, {recursive: true})).filter((name) => /\.(js|html)$/.test(name) &&
+  !/^(texts\/|help\/|(bundle|interface|openapi|render_help|three|uqr)\.)/.test(name));
 const written = new Map(await Promise.all(sources.map(async (name) =>
   /** @type {const} */ ([name, await readFile(new URL(name, folder), 'utf8')]))));
 
@@ -39,8 +41,8 @@ test('every key that the page names has a text', () => {
 function comingWith(name, seen = new Set()) {
   if (!seen.has(name) && written.has(name)) {
     seen.add(name);
-    for (const [, other] of written.get(name).matchAll(/^import [^;]*? from '\.\/([^']+)';/gms)) {
-      comingWith(other, seen);
+    for (const [, other] of written.get(name).matchAll(/^import [^;]*? from '(\.{1,2}\/[^']+)';/gms)) {
+      comingWith(posix.join(posix.dirname(name), other), seen);
     }
   }
   return [...seen];
@@ -51,7 +53,7 @@ test('what comes with the page names no text that comes later, but where its par
   const first = [...comingWith('main.js'), ...pieces, 'index.html'];
   assert.ok(first.length > 40 && pieces.length >= 5, first.join(' '));
   // These belong to the library or the settings, or show the scanner's own words until the texts are loaded.
-  const ofOtherParts = new Set(['bin.js', 'power.js', 'wording.js']);
+  const ofOtherParts = new Set(['scan/bin.js', 'scanner/power.js', 'base/wording.js']);
   for (const name of first.filter((file) => !ofOtherParts.has(file))) {
     const {whole, quoted, begun} = namedIn(written.get(name));
     const keys = [...whole, ...quoted, ...begun].filter((key) => key.includes('.') && isLater(key));

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {cureText, shownOf} from '../../web/turntable.js';
+import {cureText, shownOf} from '../../web/scanner/turntable.js';
 
 const finding = (state, set = {}) => ({check: 'turn-whole', name: 'A whole turn', state, measured: '', advice: '', set});
 const tested = (findings) => ({state: 'idle', error: null, test: {state: 'done', done: 1, findings, error: null}});

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {complaintOf, phaseOf, shownOf} from '../../web/update.js';
+import {complaintOf, phaseOf, shownOf} from '../../web/scanner/update.js';
 
 const idle = {
   update: {version: '0.1.0', slot: 'a', state: 'none', update_version: '', error: ''},

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {barsOf, consequenceOf, inPlace, nameComplaint, passwordComplaint, regionOf, sharedOf, summaryOf, troubleOf} from '../../web/wifi.js';
+import {barsOf, consequenceOf, inPlace, nameComplaint, passwordComplaint, regionOf, sharedOf, summaryOf, troubleOf} from '../../web/scanner/wifi.js';
 
 const wifi = {state: 'hotspot', name: '', country: '', hotspot: 'Octurn-1A2B', error: '', host: 'octurn', networks: []};
 const network = (name, signal_dbm = -60) => ({name, signal_dbm, secured: true});

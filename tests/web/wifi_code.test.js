@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {codePath, wifiCodeText} from '../../web/wifi_code.js';
+import {codePath, wifiCodeText} from '../../web/scanner/wifi_code.js';
 
 test('the text of a code is what phones read', () => {
   assert.equal(wifiCodeText('Home', 'open sesame'), 'WIFI:T:WPA;S:Home;P:open sesame;;');

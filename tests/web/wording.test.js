@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {refusalText} from '../../web/wording.js';
+import {refusalText} from '../../web/base/wording.js';
 
 const worded = (code, parameters) => refusalText({code, detail: 'as it is said', parameters});
 

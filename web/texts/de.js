@@ -1,6 +1,6 @@
 // The page's words in German, and the scanner's sentences by the English ones.
 
-/** @type {import('../texts.js').Texts} */
+/** @type {import('../base/texts.js').Texts} */
 export const texts = {
   'top.skip': 'Zu den Bedienelementen springen',
   'top.start': 'Octurn, Anfang',
@@ -273,6 +273,12 @@ export const texts = {
   'fact.took': '{when}, in {duration}',
   'fact.motor': 'Motor',
   'fact.late': '{count} Impulse zu spät, daher drehte er langsamer',
+  'fact.slips': {
+    one: 'verlor an {count} Halt Schritte; er wurde langsamer wiederholt. „Umdrehung erproben“ findet die richtigen Geschwindigkeiten.',
+    other: 'verlor an {count} Halten Schritte; sie wurden langsamer wiederholt. „Umdrehung erproben“ findet die richtigen Geschwindigkeiten.',
+  },
+  'fact.platform': 'Teller',
+  'fact.swung': 'schwang nach; Halte warteten bis zu {time} länger',
   'fact.more': 'Alle Angaben',
   'fact.triangles': 'Dreiecke',
   'fact.watertight': 'Wasserdicht',
@@ -338,6 +344,7 @@ export const texts = {
   'refusal.sensor-other.first_pose_with': 'Die erste Seite wurde mit einem anderen Sensor gescannt: {first_pose_with}.',
   'refusal.sensor-silent.lost_share.silent_ms': 'Seit {silent_ms} war kein Bild des Sensors brauchbar: {lost_share} seiner Pakete gingen auf USB verloren.',
   'refusal.sensor-silent.silent_ms': 'Der Sensor hat seit {silent_ms} kein Bild gesendet.',
+  'refusal.turntable-failed.stop': 'Auf dem Weg zu Halt {stop} verliert der Motor Schritte, so langsam er auch dreht.',
   'cure.calibrate': 'Kalibrieren',
   'cure.space': 'Scanraum ändern',
   'cure.flatten': 'Unebenheit des Sensors korrigieren',
@@ -1119,6 +1126,8 @@ export const said = {
   'the sensor has sent no frame yet': 'der Sensor hat noch kein Bild gesendet',
   'Try again in a moment.': 'In einem Moment noch einmal versuchen.',
   'Unplug the sensor, plug it in again, and retry.': 'Den Sensor abziehen, wieder einstecken und noch einmal versuchen.',
+  'Give the motor more current, or make the platform lighter.': 'Dem Motor mehr Strom geben oder den Teller leichter machen.',
+  'Give the motor more current, or make the platform lighter. Then resume the scan.': 'Dem Motor mehr Strom geben oder den Teller leichter machen. Dann den Scan fortsetzen.',
   'Unplug the sensor, and plug it in again.': 'Den Sensor abziehen und wieder einstecken.',
   'Unplug the sensor, plug it in again, and retry. Then resume the scan.': 'Den Sensor abziehen und wieder einstecken. Dann den Scan fortsetzen.',
   'the scanner was switched off during this scan': 'der Scanner wurde während dieses Scans ausgeschaltet',

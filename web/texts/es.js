@@ -1,6 +1,6 @@
 // The page's words in Spanish, and the scanner's sentences by the English ones.
 
-/** @type {import('../texts.js').Texts} */
+/** @type {import('../base/texts.js').Texts} */
 export const texts = {
   'top.skip': 'Ir a los controles',
   'top.start': 'Octurn, inicio',
@@ -273,6 +273,12 @@ export const texts = {
   'fact.took': '{when}, en {duration}',
   'fact.motor': 'Motor',
   'fact.late': '{count} pulsos con retraso, así que giró más despacio',
+  'fact.slips': {
+    one: 'perdió pasos en {count} parada, que se repitió más despacio. «Probar una vuelta» encuentra las velocidades adecuadas.',
+    other: 'perdió pasos en {count} paradas, que se repitieron más despacio. «Probar una vuelta» encuentra las velocidades adecuadas.',
+  },
+  'fact.platform': 'Plato',
+  'fact.swung': 'oscilaba tras un movimiento; las paradas esperaron hasta {time} más',
   'fact.more': 'Todos los detalles',
   'fact.triangles': 'Triángulos',
   'fact.watertight': 'Estanco',
@@ -338,6 +344,7 @@ export const texts = {
   'refusal.sensor-other.first_pose_with': 'El primer lado se escaneó con otro sensor: {first_pose_with}.',
   'refusal.sensor-silent.lost_share.silent_ms': 'Ninguna imagen del sensor ha sido utilizable desde hace {silent_ms}: se perdió por USB el {lost_share} de sus paquetes.',
   'refusal.sensor-silent.silent_ms': 'El sensor no ha enviado ninguna imagen desde hace {silent_ms}.',
+  'refusal.turntable-failed.stop': 'De camino a la parada {stop} el motor pierde pasos, por despacio que gire.',
   'cure.calibrate': 'Calibrar',
   'cure.space': 'Cambiar el espacio escaneado',
   'cure.flatten': 'Corregir la irregularidad del sensor',
@@ -1119,6 +1126,8 @@ export const said = {
   'the sensor has sent no frame yet': 'el sensor aún no ha enviado ninguna imagen',
   'Try again in a moment.': 'Intentar de nuevo en un momento.',
   'Unplug the sensor, plug it in again, and retry.': 'Desconectar el sensor, conectarlo otra vez y reintentar.',
+  'Give the motor more current, or make the platform lighter.': 'Dar más corriente al motor o aligerar el plato.',
+  'Give the motor more current, or make the platform lighter. Then resume the scan.': 'Dar más corriente al motor o aligerar el plato. Después reanudar el escaneo.',
   'Unplug the sensor, and plug it in again.': 'Desconectar el sensor y volver a conectarlo.',
   'Unplug the sensor, plug it in again, and retry. Then resume the scan.': 'Desconectar el sensor y conectarlo otra vez. Luego reanudar el escaneo.',
   'the scanner was switched off during this scan': 'el escáner se apagó durante este escaneo',

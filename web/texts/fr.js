@@ -1,6 +1,6 @@
 // The page's words in French, and the scanner's sentences by the English ones.
 
-/** @type {import('../texts.js').Texts} */
+/** @type {import('../base/texts.js').Texts} */
 export const texts = {
   'top.skip': 'Aller aux commandes',
   'top.start': 'Octurn, accueil',
@@ -273,6 +273,12 @@ export const texts = {
   'fact.took': '{when}, en {duration}',
   'fact.motor': 'Moteur',
   'fact.late': '{count} impulsions en retard, il a donc tourné plus lentement',
+  'fact.slips': {
+    one: 'a perdu des pas à {count} arrêt, repris plus lentement. « Essayer un tour » trouve les bonnes vitesses.',
+    other: 'a perdu des pas à {count} arrêts, repris plus lentement. « Essayer un tour » trouve les bonnes vitesses.',
+  },
+  'fact.platform': 'Plateau',
+  'fact.swung': 'oscillait après un mouvement ; les arrêts ont attendu jusqu’à {time} de plus',
   'fact.more': 'Tous les détails',
   'fact.triangles': 'Triangles',
   'fact.watertight': 'Étanche',
@@ -338,6 +344,7 @@ export const texts = {
   'refusal.sensor-other.first_pose_with': 'Le premier côté a été numérisé avec un autre capteur : {first_pose_with}.',
   'refusal.sensor-silent.lost_share.silent_ms': 'Aucune image du capteur n’est utilisable depuis {silent_ms} : {lost_share} de ses paquets se sont perdus sur l’USB.',
   'refusal.sensor-silent.silent_ms': 'Le capteur n’a envoyé aucune image depuis {silent_ms}.',
+  'refusal.turntable-failed.stop': 'En allant à l’arrêt {stop}, le moteur perd des pas, même très lentement.',
   'cure.calibrate': 'Calibrer',
   'cure.space': 'Changer l’espace numérisé',
   'cure.flatten': 'Corriger les irrégularités du capteur',
@@ -1119,6 +1126,8 @@ export const said = {
   'the sensor has sent no frame yet': 'le capteur n’a pas encore envoyé d’image',
   'Try again in a moment.': 'Réessayer dans un instant.',
   'Unplug the sensor, plug it in again, and retry.': 'Débrancher le capteur, le rebrancher et réessayer.',
+  'Give the motor more current, or make the platform lighter.': 'Donner plus de courant au moteur ou alléger le plateau.',
+  'Give the motor more current, or make the platform lighter. Then resume the scan.': 'Donner plus de courant au moteur ou alléger le plateau. Puis reprendre le scan.',
   'Unplug the sensor, and plug it in again.': 'Débrancher le capteur et le rebrancher.',
   'Unplug the sensor, plug it in again, and retry. Then resume the scan.': 'Débrancher et rebrancher le capteur. Reprendre ensuite la numérisation.',
   'the scanner was switched off during this scan': 'le scanner a été éteint pendant cette numérisation',

@@ -1,7 +1,6 @@
 #include "calibrate/optics_solver.hpp"
 
-#include <Eigen/Cholesky>
-#include <Eigen/LU>
+#include <Eigen/Geometry>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -12,6 +11,7 @@
 #include "depth/pinhole.hpp"
 #include "octurn/sensor_map.hpp"
 #include "octurn/units.hpp"
+#include "solve/symmetric_solver.hpp"
 
 namespace octurn {
 namespace {
@@ -238,7 +238,7 @@ std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSampl
   const std::vector<PlatformPixel> pixels = platform_pixels(samples, plane);
   OpticsState state(sensor, start);
   UnknownMatrix covariance = UnknownMatrix::Identity();
-  Eigen::Matrix4d of_axis = Eigen::Matrix4d::Identity();  // with these optics
+  UnknownMatrix matrix = UnknownMatrix::Identity();  // its inverse
   UnknownVector step = UnknownVector::Zero();
   for (int i = 0; i < max_optics_steps; ++i) {
     const auto sums = object_equations(views, state, i == 0 ? first_limits : later_limits, threads);
@@ -251,24 +251,32 @@ std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSampl
     all.matrix += platform.matrix;
     all.right += platform.right;
     add_priors(all, state);
-    step = all.matrix.ldlt().solve(all.right);
-    if (!step.allFinite() || std::abs(step[optics_at]) > max_focal_change) {
+    const auto solution = solve_symmetric(all.matrix, all.right);
+    if (!solution || std::abs(solution->values[optics_at]) > max_focal_change) {
       return std::nullopt;
     }
-    covariance = all.matrix.inverse();
-    of_axis = all.matrix.topLeftCorner<4, 4>().inverse();
+    step = solution->values;
+    matrix = all.matrix;
+    covariance = solution->inverse;
     state.move(step);
     read_again(views, state);
     if (step.segment<2>(2).norm() < settled_optics) {
       break;
     }
   }
-  const auto of_optics = covariance.bottomRightCorner<optics_count, optics_count>();
-  return OpticsSolution{.optics = to_optics(state, sensor, of_optics.diagonal().cwiseSqrt()),
+  const Optics sigma = covariance.diagonal().tail<optics_count>().cwiseSqrt();
+  // With the optics known, the axis is determined better than among all unknowns.
+  const auto axis = solve_symmetric(matrix.topLeftCorner<4, 4>(), Eigen::Vector4d::Zero());
+  const auto change =
+      solve_symmetric(covariance.bottomRightCorner<optics_count, optics_count>(), state.optics);
+  if (!axis || !change) {
+    return std::nullopt;
+  }
+  return OpticsSolution{.optics = to_optics(state, sensor, sigma),
                         .axis = {.platform_from_sensor = state.pose,
-                                 .covariance = of_axis,
+                                 .covariance = axis->inverse,
                                  .last_step = step.segment<2>(2).norm()},
-                        .significance = state.optics.dot(of_optics.ldlt().solve(state.optics))};
+                        .significance = state.optics.dot(change->values)};
 }
 
 }  // namespace octurn

@@ -1,6 +1,5 @@
 #include "calibrate/stop_offsets.hpp"
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +9,7 @@
 #include "calibrate/for_each_stop.hpp"
 #include "io/number_text.hpp"
 #include "octurn/units.hpp"
+#include "solve/symmetric_solver.hpp"
 
 namespace octurn {
 namespace {
@@ -126,11 +126,12 @@ AngleEquations angle_equations(const TurnViews& turn, const Eigen::Isometry3d& p
 /// first stop instead, every sigma would be large where that stop sees the object in profile.
 /// @param covariance  of the offsets from the second stop on
 double worst_sigma(const Eigen::MatrixXd& covariance) {
-  const Eigen::Index stops = covariance.rows() + 1;
-  Eigen::MatrixXd from_mean =
-      Eigen::MatrixXd::Constant(stops, stops - 1, -1.0 / static_cast<double>(stops));
-  from_mean.bottomRows(stops - 1) += Eigen::MatrixXd::Identity(stops - 1, stops - 1);
-  return std::sqrt((from_mean * covariance * from_mean.transpose()).diagonal().maxCoeff());
+  const auto stops = static_cast<double>(covariance.rows() + 1);
+  const double of_mean = covariance.sum() / (stops * stops);
+  // var(x - m) = var(x) - 2 cov(x, m) + var(m); the first stop's x is 0.
+  const double of_others =
+      (covariance.diagonal() - 2 / stops * covariance.rowwise().sum()).maxCoeff();
+  return std::sqrt(of_mean + std::max(0.0, of_others));
 }
 
 /// The sigma of the step from a stop to the next; the first stop's angle is fixed.
@@ -243,16 +244,15 @@ std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
     }
     // Angles are measured from the first stop.
     const auto free = static_cast<Eigen::Index>(stops) - 1;
-    const Eigen::MatrixXd normal_matrix = all.normal_matrix.bottomRightCorner(free, free);
-    const Eigen::LDLT<Eigen::MatrixXd> factors(normal_matrix);
-    const Eigen::VectorXd motion = factors.solve(all.right.tail(free));
-    if (factors.info() != Eigen::Success || !factors.isPositive() || !motion.allFinite()) {
+    const auto motion =
+        solve_symmetric(all.normal_matrix.bottomRightCorner(free, free), all.right.tail(free));
+    if (!motion) {
       return std::nullopt;
     }
     for (Eigen::Index i = 0; i < free; ++i) {
-      solved.offsets[static_cast<std::size_t>(i) + 1] += motion[i];
+      solved.offsets[static_cast<std::size_t>(i) + 1] += motion->values[i];
     }
-    solved.covariance = factors.solve(Eigen::MatrixXd::Identity(free, free)) * all.variance;
+    solved.covariance = motion->inverse * all.variance;
   }
   return worst_sigma(solved.covariance) < radians_from_degrees(max_sigma_deg)
              ? std::optional(std::move(solved))

@@ -1,6 +1,5 @@
 #include "calibrate/stop_step.hpp"
 
-#include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +7,7 @@
 
 #include "calibrate/for_each_stop.hpp"
 #include "octurn/units.hpp"
+#include "solve/symmetric_solver.hpp"
 
 namespace octurn {
 namespace {
@@ -111,20 +111,18 @@ MatrixXd make_axis_columns(const std::vector<double>& angles) {
 
 /// A hypothesis, solved.
 struct Solved {
-  VectorXd values;
-  MatrixXd inverse;
+  SymmetricSolution solution = {};  // empty: the data do not determine it
   double explained = 0;
 };
 
 Solved solve_hypothesis(const MotionEquations& all, const MatrixXd& columns) {
-  const MatrixXd normal_matrix = columns.transpose() * all.normal_matrix * columns;
   const VectorXd right = columns.transpose() * all.right;
-  const Eigen::LDLT<MatrixXd> factors(normal_matrix);
-  Solved solved{
-      .values = factors.solve(right),
-      .inverse = factors.solve(MatrixXd::Identity(normal_matrix.rows(), normal_matrix.cols()))};
-  solved.explained = right.dot(solved.values);
-  return solved;
+  auto solution = solve_symmetric(columns.transpose() * all.normal_matrix * columns, right);
+  if (!solution) {
+    return {};
+  }
+  const double explained = right.dot(solution->values);
+  return {.solution = *std::move(solution), .explained = explained};
 }
 
 }  // namespace
@@ -154,10 +152,11 @@ std::optional<ObjectStep> solve_object_step(const TurnViews& turn,
         best.turn_explained, (solve_hypothesis(all, turned).explained - of_axis) / all.squares);
     const Solved solved = solve_hypothesis(all, moved);
     const double explained = (solved.explained - of_axis) / all.squares;
-    if (solved.values.allFinite() && explained > best.explained) {
+    if (explained > best.explained) {
+      const auto& [values, inverse] = solved.solution;
       best.stop = stop;
-      best.shift = solved.values.head<2>();
-      best.sigma = std::sqrt(variance * solved.inverse.topLeftCorner<2, 2>().diagonal().maxCoeff());
+      best.shift = values.head<2>();
+      best.sigma = std::sqrt(variance * inverse.topLeftCorner<2, 2>().diagonal().maxCoeff());
       best.explained = explained;
     }
   }

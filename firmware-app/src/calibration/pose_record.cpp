@@ -19,15 +19,15 @@ using nlohmann::json;
 
 using Name = std::pair<PoseOrigin, std::string_view>;
 
-constexpr std::array<Name, 5> names{{{PoseOrigin::drawing, "default"},
-                                     {PoseOrigin::settings, "settings"},
-                                     {PoseOrigin::page, "page"},
-                                     {PoseOrigin::turn, "turn"},
-                                     {PoseOrigin::scan, "scan"}}};
+constexpr std::array<Name, 5> origin_names{{{PoseOrigin::drawing, "default"},
+                                            {PoseOrigin::settings, "settings"},
+                                            {PoseOrigin::page, "page"},
+                                            {PoseOrigin::turn, "turn"},
+                                            {PoseOrigin::scan, "scan"}}};
 
 PoseOrigin to_origin(const JsonValue& name) {
-  const auto* const found = std::ranges::find(names, name.text(), &Name::second);
-  if (found == names.end()) {
+  const auto* const found = std::ranges::find(origin_names, name.text(), &Name::second);
+  if (found == origin_names.end()) {
     name.refuse("a name that this version knows");
   }
   return found->first;
@@ -52,7 +52,7 @@ std::optional<PoseFigures> to_figures(JsonObject& keys) {
 }  // namespace
 
 std::string_view to_string(PoseOrigin origin) {
-  return std::ranges::find(names, origin, &Name::first)->second;
+  return std::ranges::find(origin_names, origin, &Name::first)->second;
 }
 
 PoseRecord to_record(const CalibrationReport& report, PoseOrigin origin, double scale) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Geometry>
+#include <chrono>
 #include <span>
 
 #include "octurn/snapshot.hpp"
@@ -31,6 +32,11 @@ class Settling {
  public:
   /// Frames to leave out after the next move.
   int frames() const { return frames_; }
+
+  /// The same as time, at a Kinect's 30 frames a second.
+  std::chrono::duration<double> time() const {
+    return std::chrono::duration<double>(frames_ / 30.0);
+  }
 
   /// Reports a move. @param frames  after which the platform stood still
   void stood_after(int frames);

@@ -11,7 +11,8 @@
 namespace octurn {
 namespace {
 
-/// A sensor of a platform that goes on swinging while frames are read.
+/// A simulated sensor of a platform that goes on swinging while frames are read. A hurried
+/// simulation on a busy machine may have frames of before in store: they are passed over.
 class SensorOfPlatform final : public WrappedSensor {
  public:
   SensorOfPlatform(std::unique_ptr<DepthSensor> sensor, SimulatedTurntable* const& turntable)
@@ -22,7 +23,13 @@ class SensorOfPlatform final : public WrappedSensor {
     if (turntable_ != nullptr) {
       turntable_->swing(frame_time);
     }
-    return WrappedSensor::read(stop);
+    const auto swung = std::chrono::steady_clock::now();
+    for (;;) {
+      std::optional<TimedFrame> timed = WrappedSensor::read(stop);
+      if (!timed || timed->time >= swung) {
+        return timed;
+      }
+    }
   }
 
  private:
@@ -121,17 +128,25 @@ Turntable& Rig::turntable() {
         std::make_unique<Stepper>(*options_.stepper, options_.open_lines(*options_.stepper),
                                   position_at(closed_angle_deg_, steps));
   } else {
-    const Motion motion;
     auto simulated = std::make_unique<SimulatedTurntable>(
-        [this](double angle) { show(angle); }, options_.speed, motion,
-        position_at(closed_angle_deg_, motion.steps_per_turn), options_.load);
+        [this](double angle) { show(angle); }, options_.speed, options_.motion,
+        position_at(closed_angle_deg_, options_.motion.steps_per_turn), options_.load);
     simulated_ = simulated.get();
     turntable_ = std::move(simulated);
   }
+  turntable_->set_pace(pace_);
   return *turntable_;
 }
 
+void Rig::set_pace(double pace) {
+  pace_ = pace;
+  if (turntable_) {
+    turntable_->set_pace(pace);
+  }
+}
+
 void Rig::release_turntable() {
+  set_pace(1);
   if (turntable_) {
     turntable_->release();
   }

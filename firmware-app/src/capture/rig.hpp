@@ -39,8 +39,9 @@ struct SeenStop {
 /// The devices to scan with.
 struct RigOptions {
   std::string sensor_uri = {};                  ///< device URI of OpenNI2
-  double speed = 1.0;                           ///< of a simulated rig, relative to real time
   std::optional<StepperSettings> stepper = {};  ///< of the real turntable; nullopt: it is simulated
+  Motion motion = {};                           ///< of a simulated turntable
+  double speed = 1.0;                           ///< of a simulated rig, relative to real time
   /// What a simulated turntable turns; nothing: it has no weight, and follows each pulse at once.
   std::optional<PlatformLoad> load = {};
   double platform_angle_deg = 0;  ///< initial angle
@@ -102,12 +103,19 @@ class Rig {
   /// @throws Error "turntable-missing" or "turntable-failed"
   Turntable& turntable();
 
-  /// Switches the turntable's motor off.
+  /// Switches the turntable's motor off. The next move has the configured pace.
   void release_turntable();
 
   /// Releases the turntable's lines, which switches the motor off. The next use opens them again
   /// with the platform's angle unchanged.
   void close_turntable();
+
+  /// Whether the platform can lag behind the turntable's count. One that has no weight cannot.
+  bool can_lose_steps() const { return options_.stepper || options_.load; }
+
+  /// The turntable's pace, as in `Turntable::set_pace`, until it is released.
+  double pace() const { return pace_; }
+  void set_pace(double pace);
 
   /// Shows a recording the platform's angle, and a simulated sensor or camera where the platform
   /// is.
@@ -135,6 +143,7 @@ class Rig {
   std::unique_ptr<Turntable> turntable_;
   Settling settling_;
   SeenStop seen_stop_;
+  double pace_ = 1;                          // of the configured motion
   SimulatedTurntable* simulated_ = nullptr;  // `turntable_`, if it is simulated
   std::unique_ptr<DepthSensor> sensor_;
   std::optional<PacketCounts> counted_ = {};  // the sensor's, when its losses were last taken

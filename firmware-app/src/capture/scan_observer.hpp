@@ -16,6 +16,8 @@ struct ScanObserver {
   std::function<void(Phase phase, int snapshots_done)> on_progress = [](Phase, int) {};
   /// Before each move, with the angle of its end, degrees.
   std::function<void(double angle_deg)> on_turn = [](double) {};
+  /// When a picture shows that the motor lost steps. The stop is then taken again.
+  std::function<void()> on_slip = [] {};
   std::function<void(const DepthFrame& frame)> on_frame = [](const DepthFrame&) {};
   std::function<void(const Picture& picture)> on_picture = [](const Picture&) {};
   std::function<void(const Reconstructor& reconstruction, int snapshots)> on_added =

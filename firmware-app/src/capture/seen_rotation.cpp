@@ -227,4 +227,16 @@ std::optional<SeenRotation> seen_rotation(const PlatformLook& view, const DepthF
                       .sharpness = (mean_beside - best.disagreement) / best.disagreement};
 }
 
+std::vector<double> misfits_at(const PlatformLook& view, const DepthFrame& from,
+                               const DepthFrame& to, std::span<const double> degs) {
+  const FramePair frames(view, from, to);
+  std::vector<double> misfits;
+  if (frames.see_an_object()) {
+    for (const double deg : degs) {
+      misfits.push_back(frames.disagreement({.deg = deg}));
+    }
+  }
+  return misfits;
+}
+
 }  // namespace octurn

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "capture/platform_swing.hpp"
 #include "octurn/snapshot.hpp"
@@ -30,5 +32,12 @@ inline constexpr double min_sharpness = 0.08;
 /// @return nothing if either frame shows too little of an object
 std::optional<SeenRotation> seen_rotation(const PlatformLook& view, const DepthFrame& from,
                                           const DepthFrame& to, const AngleRange& range);
+
+/// The misfit of two depth frames for each of some rotations, from 0 to 1. It takes a fraction of
+/// the time of `seen_rotation`.
+/// @param degs  counter-clockwise seen from above
+/// @return empty if either frame shows too little of an object
+std::vector<double> misfits_at(const PlatformLook& view, const DepthFrame& from,
+                               const DepthFrame& to, std::span<const double> degs);
 
 }  // namespace octurn

@@ -21,8 +21,12 @@ using Clock = std::chrono::steady_clock;
 // Maximum number of buffered frames from before the end of a move: a second of them, at 30 Hz.
 constexpr int max_stale_frames = 30;
 
-constexpr int max_attempts = 3;         // at a stop to which steps are lost
-constexpr double max_lost_periods = 4;  // by one late pulse
+constexpr int max_attempts = 4;       // at a stop to which steps are lost
+constexpr int max_lost_periods = 4;   // on the way to a stop
+constexpr double slower = 0.7;        // the pace after lost steps: half of the torque
+constexpr double clear_share = 0.8;   // of the counted angle's misfit: another one explains it
+constexpr double min_period_deg = 1;  // what the images of two stops can tell
+constexpr double max_turn_deg = 30;   // between stops: further on, they share too little
 
 // More frames than these are not taken for pixels that were lost on the way in all frames.
 constexpr std::size_t max_more_frames = 10;
@@ -128,43 +132,68 @@ bool turn_to(Rig& rig, const Stop& at, const std::stop_token& stop, const ScanOb
 
 namespace {
 
-/// How far the platform lags behind its count since the last stop, microsteps: whole periods, as
-/// the two stops' images show it. Nothing if they do not.
-std::optional<std::int64_t> seen_lag(Rig& rig, const PlatformLook& look, const DepthFrame& image) {
-  const Turntable& turntable = rig.turntable();
-  const SeenStop& last = rig.seen_stop();
-  if (last.image.depth.empty()) {
-    return std::nullopt;
+/// The last stop of a scan and the present one.
+struct TwoStops {
+  const PlatformLook& look;
+  const SeenStop& last;
+  const DepthFrame& image;
+  double turned_deg = 0;  // as counted
+  double period_deg = 0;  // of the coils
+};
+
+/// Whether a turn by whole periods more or less explains the images clearly better.
+bool seem_to_slip(const TwoStops& stops) {
+  if (stops.period_deg < min_period_deg || std::abs(stops.turned_deg) > max_turn_deg) {
+    return false;
   }
-  const double deg_per_step = 360.0 / turntable.steps_per_turn();
-  const double turned_deg =
-      static_cast<double>(turntable.position() - last.position) * deg_per_step;
-  const double period_deg = turntable.steps_per_period() * deg_per_step;
-  const double range_deg = max_lost_periods * period_deg + 1;
-  const auto seen =
-      seen_rotation(look, last.image, image, {turned_deg - range_deg, turned_deg + range_deg});
+  std::vector<double> degs;
+  for (int periods = -max_lost_periods; periods <= max_lost_periods; ++periods) {
+    degs.push_back(stops.turned_deg - periods * stops.period_deg);
+  }
+  const std::vector<double> misfits = misfits_at(stops.look, stops.last.image, stops.image, degs);
+  return !misfits.empty() && std::ranges::min(misfits) < clear_share * misfits[max_lost_periods];
+}
+
+/// How many periods the platform lags behind its count since the last stop. Nothing if the images
+/// do not tell.
+std::optional<std::int64_t> seen_lag(const TwoStops& stops) {
+  const double range_deg = max_lost_periods * stops.period_deg + 1;
+  const auto seen = seen_rotation(stops.look, stops.last.image, stops.image,
+                                  {stops.turned_deg - range_deg, stops.turned_deg + range_deg});
   if (!seen || seen->sharpness < min_sharpness) {
     return std::nullopt;
   }
-  return std::llround((turned_deg - seen->deg) / period_deg) * turntable.steps_per_period();
+  return std::llround((stops.turned_deg - seen->deg) / stops.period_deg);
 }
 
-/// Whether a stop has to be taken again, as pulses on the way to it were so late that the platform
-/// lost steps: the position is then corrected.
+/// Whether a stop has to be taken again, as the platform lost steps on the way to it. The position
+/// is then corrected, and the next moves are slower.
 bool has_slipped(Rig& rig, const PlatformLook& look, const DepthFrame& image) {
   Turntable& turntable = rig.turntable();
-  if (!turntable.may_have_lost_steps()) {
+  const SeenStop& last = rig.seen_stop();
+  if (last.image.depth.empty() || !rig.can_lose_steps()) {
     return false;
   }
-  const auto lag = seen_lag(rig, look, image);
-  if (!lag || *lag == 0) {
-    log::info("turntable", lag ? "late pulses lost no step, as the picture shows"
-                               : "late pulses may have lost steps: the picture does not show it");
+  const double deg_per_step = 360.0 / turntable.steps_per_turn();
+  const TwoStops stops{
+      .look = look,
+      .last = last,
+      .image = image,
+      .turned_deg = static_cast<double>(turntable.position() - last.position) * deg_per_step,
+      .period_deg = turntable.steps_per_period() * deg_per_step};
+  if (!turntable.may_have_lost_steps() && !seem_to_slip(stops)) {
     return false;
   }
-  log::warning("turntable", "late pulses lost " + std::to_string(*lag) +
-                                " steps, as the picture shows: the stop is taken again");
-  turntable.set_position(turntable.position() - *lag);
+  const auto periods = seen_lag(stops);
+  if (!periods || *periods == 0) {
+    return false;
+  }
+  const std::int64_t steps = *periods * turntable.steps_per_period();
+  log::warning("turntable", "the motor lost " + std::to_string(steps) +
+                                " steps, as the picture shows: the stop is taken again, more "
+                                "slowly");
+  turntable.set_position(turntable.position() - steps);
+  rig.set_pace(slower * rig.pace());
   return true;
 }
 
@@ -188,7 +217,15 @@ std::optional<DepthFrame> take_depth_image(Rig& rig, const Stop& at, const ScanS
       return std::nullopt;
     }
     DepthFrame image = merge_frames(frames, settings.filter);
-    if (attempt < max_attempts && has_slipped(rig, look, image)) {
+    if (has_slipped(rig, look, image)) {
+      observer.on_slip();
+      if (attempt == max_attempts) {
+        throw Error(ErrorCode::turntable_failed,
+                    "the motor loses steps on the way to stop " + std::to_string(at.index + 1) +
+                        ", however slowly it turns",
+                    "Give the motor more current, or make the platform lighter.",
+                    {{"stop", at.index + 1.0}});
+      }
       continue;
     }
     rig.seen_stop() = {.image = image, .position = at.position};

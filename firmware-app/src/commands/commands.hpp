@@ -25,6 +25,7 @@ struct RigArguments {
   std::optional<double> gear_ratio = {};  ///< of the simulated turntable; nothing: as configured
   bool reversed = false;                  ///< the simulated motor is wired the other way
   double play_deg = 0;                    ///< backlash of the simulated gears
+  PlatformLoad load = {};                 ///< on the simulated turntable, if it has weight
   std::string sensor_uri = {};            ///< for `open_sensor`
 };
 

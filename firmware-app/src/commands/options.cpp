@@ -97,7 +97,17 @@ std::vector<const CLI::Option*> add_depth_simulation_options(CLI::App& command, 
       command
           .add_option("--simulate-play", rig.play_deg, "play of the simulated gears, degrees (0)")
           ->type_name("DEGREES")
-          ->check(CLI::Range(0.0, 10.0))};
+          ->check(CLI::Range(0.0, 10.0)),
+      command
+          .add_option("--simulate-torque", rig.load.holding_torque,
+                      "holding torque of the simulated motor, N m (0.2)")
+          ->type_name("NM")
+          ->check(CLI::Range(0.01, 10.0)),
+      command
+          .add_option("--simulate-inertia", rig.load.inertia,
+                      "of the simulated platform about its axis, kg m^2 (0.005)")
+          ->type_name("KGM2")
+          ->check(CLI::Range(0.0001, 0.1))};
 }
 
 /// Options of a simulated rig with a camera and lasers.

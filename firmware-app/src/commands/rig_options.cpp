@@ -63,11 +63,22 @@ LaserSimulation to_simulation(const RigArguments& arguments, const LaserSettings
   return simulation;
 }
 
+/// The motion of a simulated turntable: the configured speeds, by quarter steps on the shaft.
+Motion to_simulated_motion(const StepperSettings& configured) {
+  const StepperSettings documented;
+  StepperSettings simulated = configured;
+  simulated.microsteps = documented.microsteps;
+  simulated.full_steps = documented.full_steps;
+  simulated.gear_ratio = documented.gear_ratio;
+  return to_motion(simulated);
+}
+
 RigOptions laser_rig_options(const RigArguments& arguments, const Config& config) {
   if (!arguments.simulate) {
     return {.stepper = config.turntable, .laser = config.laser};
   }
   return {
+      .motion = to_simulated_motion(config.turntable),
       .speed = arguments.speed,
       .laser = config.laser,
       .open_camera = [simulation = to_simulation(arguments, config.laser), speed = arguments.speed](
@@ -92,8 +103,9 @@ RigOptions rig_options(const RigArguments& arguments, const Config& config) {
   // A recording shows what was seen at an angle, and not at one that a heavy platform swings to.
   const bool has_weight = !arguments.perfect && arguments.sensor_uri.empty();
   return {.sensor_uri = arguments.sensor_uri.empty() ? simulated : arguments.sensor_uri,
+          .motion = to_simulated_motion(config.turntable),
           .speed = arguments.speed,
-          .load = has_weight ? std::optional(PlatformLoad{}) : std::nullopt,
+          .load = has_weight ? std::optional(arguments.load) : std::nullopt,
           .open_sensor = sensor_opener(to_mechanism(arguments, config.turntable))};
 }
 

@@ -12,6 +12,7 @@
 #include "store/scan_estimate.hpp"
 #include "turntable/pulse_train.hpp"
 #include "turntable/real_time.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {
@@ -81,7 +82,7 @@ std::vector<Finding> check_machine(const DoctorInput& input) {
           check_temperature(root),
           check_supply(root),
           check_throttling(root),
-          check_clock(root, std::chrono::system_clock::now(), is_clock_synchronised())};
+          check_clock(root, std::chrono::system_clock::now(), is_clock_synchronised(root))};
 }
 
 }  // namespace

@@ -43,7 +43,4 @@ Finding check_throttling(const std::filesystem::path& root);
 Finding check_clock(const std::filesystem::path& root, std::chrono::system_clock::time_point now,
                     bool synchronised);
 
-/// Whether a time server has set the kernel's clock lately (adjtimex(2)).
-bool is_clock_synchronised();
-
 }  // namespace octurn

@@ -15,7 +15,6 @@ namespace octurn {
 namespace {
 
 constexpr int frames_at_look = 6;
-constexpr double frames_per_second = 30;
 
 // Commanded moves, tried in turn until the platform is seen to move: enough for gears of 1, 4 and
 // 12 times the configured gear ratio.
@@ -88,7 +87,7 @@ class TurnMeter {
   DepthFrame first_look_ = {};
   std::vector<double> sharpness_ = {};
   int looks_done_ = 0;
-  int swings_for_ = 0;  // frames, at most
+  double swings_for_s_ = 0;  // at most
 };
 
 void TurnMeter::move_to(double commanded_deg) {
@@ -107,7 +106,7 @@ DepthFrame TurnMeter::look() {
   if (frames.empty()) {
     throw Stopped{};
   }
-  swings_for_ = std::max(swings_for_, rig_.settling().frames());
+  swings_for_s_ = std::max(swings_for_s_, rig_.settling().time().count());
   on_progress_(std::min(1.0, static_cast<double>(++looks_done_) / looks));
   return merge_frames(frames, DepthFilter::average);
 }
@@ -228,7 +227,7 @@ TurnMeasurement TurnMeter::measure() {
   return {.turn_deg = 360 * whole_rate,
           .play_deg = std::max(play_deg, 0.0),
           .return_deg = measure_return(whole_rate),
-          .swings_for_s = swings_for_ / frames_per_second};
+          .swings_for_s = swings_for_s_};
 }
 
 }  // namespace

@@ -50,6 +50,8 @@ json to_json(const Job& job) {
           {"seconds_left", to_json(job.times.left)},
           {"seconds_until_pause", to_json(job.times.until_pause)},
           {"late_pulses", job.times.late_pulses},
+          {"slips", job.times.slips},
+          {"seconds_settling", to_thousandths(job.times.settling.count())},
           {"settings", to_json(job.settings)},
           {"error", job.failure ? to_json(*job.failure) : json()},
           {"calibration", to_json(job.calibration)},

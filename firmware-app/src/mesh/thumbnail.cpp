@@ -20,7 +20,7 @@ constexpr int fineness = 2;  // samples of a pixel along each axis
 constexpr int samples = side * fineness;
 constexpr float margin = 0.06F;  // of the side, around the model
 
-// Directions from the model to the eye and to the light, in the model's frame, as in web/viewer.js.
+// Directions from the model to the eye and to the light, in the model's frame, as in web/model/viewer.js.
 const Vector3f to_eye = Vector3f(0.42F, -0.83F, 0.37F).normalized();
 const Vector3f to_light = Vector3f(-0.05F, -0.72F, 0.69F).normalized();
 constexpr std::array clay{216.0F, 210.0F, 196.0F};

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
+#include <cmath>
 #include <future>
 #include <memory>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -24,6 +26,7 @@
 #include "octurn/units.hpp"
 #include "store/checked_snapshots.hpp"
 #include "store/stored_scan.hpp"
+#include "turntable/real_time.hpp"
 
 namespace octurn {
 namespace {
@@ -88,6 +91,7 @@ class Run {
 bool Run::take_snapshots() {
   rig_.seen_stop() = {};  // of an earlier scan, maybe of another object
   const int steps = rig_.turntable().steps_per_turn();
+  const OtherCores than_that_of_the_pulses;
   if (done() == 0) {
     begin_scan(scan_, settings_, folder_, rig_);
   } else {
@@ -137,7 +141,15 @@ bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
 void Run::resume() {
   expect_same_rig(scan_, settings_, rig_);
   if (!scan_.laser) {
-    first_readings_ = readings_in(checked().read(0).frame);
+    const SnapshotSource stored = checked();
+    first_readings_ = readings_in(stored.read(0).frame);
+    // The next stop shows whether steps were lost meanwhile.
+    const Turntable& turntable = rig_.turntable();
+    const double turned = std::remainder(
+        rig_.platform_angle_deg() / 360 - scan_.shots.back().angle / (2 * std::numbers::pi), 1);
+    rig_.seen_stop() = {
+        .image = stored.read(scan_.shots.size() - 1).frame,
+        .position = turntable.position() - std::llround(turned * turntable.steps_per_turn())};
     add_stored();
   }
 }

@@ -394,6 +394,7 @@ void Worker::attempt(const std::stop_token& stop) {
 ScanObserver Worker::observer(const std::stop_token& stop) {
   return {.on_progress = [this](Phase phase, int done) { show_progress(phase, done); },
           .on_turn = [this](double angle_deg) { save_platform_angle(angle_deg); },
+          .on_slip = [this] { ++job_.times.slips; },
           .on_frame = [this](const DepthFrame& frame) { show_frame(frame); },
           .on_picture = [this](const Picture& picture) { show_picture(picture); },
           .on_added =
@@ -414,6 +415,7 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
   if (is_stop_done) {
     job_.failure.reset();
     gives_up_.reset();
+    job_.times.settling = std::max(job_.times.settling, rig_.settling().time());
   }
   if (is_of_turn(job_.phase) && !is_of_turn(phase)) {
     time_left_->begin_model(now);

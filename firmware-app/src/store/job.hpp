@@ -111,7 +111,9 @@ struct JobTimes {
   std::optional<Seconds> left = {};  ///< estimated remaining time
   /// While a device fails at a stop of a running scan: time until the scan pauses.
   std::optional<Seconds> until_pause = {};
-  int late_pulses = 0;  ///< motor pulses that came late, and slowed the turn
+  int late_pulses = 0;    ///< motor pulses that came late, and slowed the turn
+  int slips = 0;          ///< pictures that showed lost steps; their stops were taken again
+  Seconds settling = {};  ///< that a stop waited at most for a platform that swung on
 };
 
 /// The builds of a scan.

@@ -3,6 +3,7 @@
 #include <sys/stat.h>
 
 #include <algorithm>
+#include <string_view>
 #include <system_error>
 #include <utility>
 
@@ -15,13 +16,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Parses a folder's name into time of deletion and id; nullopt for other names.
-std::optional<std::pair<ScanTime, std::string>> parse_folder_name(const std::string& name) {
+constexpr std::string_view unsure = ".unsure";
+
+/// The id, the time of deletion, and whether that is sure, of a folder's name; nullopt for other
+/// names.
+std::optional<BinnedScan> parse_folder_name(std::string_view name) {
+  const bool is_sure = !name.ends_with(unsure);
+  name.remove_suffix(is_sure ? 0 : unsure.size());
   const std::size_t dot = name.find('.');
   if (dot == name.npos || !is_scan_id(name.substr(0, dot)) || !is_scan_id(name.substr(dot + 1))) {
     return std::nullopt;
   }
-  return std::pair(to_time(name.substr(0, dot)), name.substr(dot + 1));
+  return BinnedScan{.job = {.id = std::string(name.substr(dot + 1))},
+                    .deleted = to_time(std::string(name.substr(0, dot))),
+                    .time_is_sure = is_sure};
 }
 
 /// Counts the bytes that the removal of folders frees. A file with several names, such as a
@@ -55,18 +63,19 @@ ScanBin::ScanBin(fs::path folder, const std::function<Job(const fs::path& folder
     : folder_(std::move(folder)) {
   clear_unfinished(folder_);
   for (const std::string& name : names_in(folder_)) {
-    const auto parts = parse_folder_name(name);
+    std::optional<BinnedScan> scan = parse_folder_name(name);
     std::error_code unknown;
-    if (parts && fs::is_directory(folder_ / name, unknown)) {
-      Job job = load(folder_ / name);
-      job.id = parts->second;
-      scans_.emplace(parts->second, BinnedScan{.job = std::move(job), .deleted = parts->first});
+    if (scan && fs::is_directory(folder_ / name, unknown)) {
+      const std::string id = std::exchange(scan->job, load(folder_ / name)).id;
+      scan->job.id = id;
+      scans_.emplace(id, *std::move(scan));
     }
   }
 }
 
 fs::path ScanBin::path(const BinnedScan& scan) const {
-  return folder_ / (to_scan_id(scan.deleted) + "." + scan.job.id);
+  return folder_ / (to_scan_id(scan.deleted) + "." + scan.job.id +
+                    std::string(scan.time_is_sure ? "" : unsure));
 }
 
 std::vector<BinnedScan> ScanBin::list() const {
@@ -106,10 +115,10 @@ std::vector<std::string> ScanBin::oldest(std::uint64_t bytes) const {
   return freed.bytes() < bytes ? std::vector<std::string>() : ids;
 }
 
-void ScanBin::take(const fs::path& scan, const Job& job, ScanTime now) {
+void ScanBin::take(const fs::path& scan, const Job& job, ScanTime now, bool time_is_sure) {
   std::error_code error;
   fs::create_directories(folder_, error);
-  const BinnedScan binned{.job = job, .deleted = now};
+  const BinnedScan binned{.job = job, .deleted = now, .time_is_sure = time_is_sure};
   if (!error) {
     fs::rename(scan, path(binned), error);
   }
@@ -157,9 +166,11 @@ void ScanBin::remove(std::string_view id) {
   }
 }
 
-void ScanBin::remove_before(ScanTime time) {
+void ScanBin::expire(ScanTime now) {
   for (const BinnedScan& scan : list()) {
-    if (scan.deleted < time) {
+    if (!scan.time_is_sure) {
+      take(path(scan), scan.job, now, true);
+    } else if (scan.deleted < now - days_in_bin) {
       remove(scan.job.id);
     }
   }

@@ -22,12 +22,13 @@ inline constexpr std::chrono::days days_in_bin{30};
 struct BinnedScan {
   Job job = {};
   ScanTime deleted = {};
+  bool time_is_sure = true;  ///< the clock was right then
 };
 
 /// The deleted scans: `DATA/bin/<when>.<id>/`, each an unchanged scan folder, named after the time
-/// of deletion. Scans are moved by renaming their folders: after a power cut, a scan is complete in
-/// one of the two places. Const functions are thread-safe; the others are called by one thread at a
-/// time.
+/// of deletion; `<when>.<id>.unsure/` if the clock was doubtful then. Scans are moved by renaming
+/// their folders: after a power cut, a scan is complete in one of the two places. Const functions
+/// are thread-safe; the others are called by one thread at a time.
 class ScanBin {
  public:
   /// Completes interrupted removals, and reads the bin.
@@ -48,7 +49,7 @@ class ScanBin {
   std::vector<std::string> oldest(std::uint64_t bytes) const;
 
   /// Moves a scan into the bin. @throws Error "data-failed", "disk-full"
-  void take(const std::filesystem::path& scan, const Job& job, ScanTime now);
+  void take(const std::filesystem::path& scan, const Job& job, ScanTime now, bool time_is_sure);
 
   /// Moves a scan back to its folder. @param id  of a scan in the bin @throws Error "data-failed"
   void put_back(std::string_view id, const std::filesystem::path& scan);
@@ -56,8 +57,9 @@ class ScanBin {
   /// Removes a scan permanently. @param id  of a scan in the bin @throws Error "data-failed"
   void remove(std::string_view id);
 
-  /// Removes the scans that were deleted before a time.
-  void remove_before(ScanTime time);
+  /// Removes the scans that were deleted more than `days_in_bin` ago. Those of which the time is
+  /// not sure count from now on. @param now  by a clock that is right
+  void expire(ScanTime now);
 
  private:
   std::filesystem::path path(const BinnedScan& scan) const;

@@ -89,8 +89,6 @@ std::uint64_t first_revision() {
               "GET /api/v1/scans lists them.");
 }
 
-ScanTime now() { return std::chrono::floor<ScanTime::duration>(std::chrono::system_clock::now()); }
-
 bool is_there(const fs::path& path) {
   std::error_code unknown;
   return fs::exists(path, unknown);
@@ -214,10 +212,11 @@ constexpr std::size_t max_platform_bytes = 4096;
 
 }  // namespace
 
-ScanStore::ScanStore(fs::path data)
+ScanStore::ScanStore(fs::path data, WallClock clock)
     : data_(std::move(data)),
       scans_(data_ / "scans"),
       platform_(data_ / "platform.json"),
+      clock_(std::move(clock)),
       lock_(make_and_lock(data_, scans_)),
       bin_(data_ / "bin", load),
       revision_(first_revision()) {
@@ -264,9 +263,17 @@ void ScanStore::enter(const fs::path& beginning, const Job& job) {
 }
 
 ScanTime ScanStore::next_time() const {
-  const auto now = std::chrono::floor<ScanTime::duration>(std::chrono::system_clock::now());
   const std::string newest = newest_id();
-  return newest.empty() ? now : std::max(now, to_time(newest) + ScanTime::duration(1));
+  return newest.empty() ? now() : std::max(now(), to_time(newest) + ScanTime::duration(1));
+}
+
+ScanTime ScanStore::now() const { return std::chrono::floor<ScanTime::duration>(clock_.now()); }
+
+/// Removes what was deleted long ago, by a clock that can be believed.
+void ScanStore::expire_bin() {
+  if (clock_.is_right()) {
+    bin_.expire(now());
+  }
 }
 
 void ScanStore::save(const Job& job) {
@@ -390,7 +397,7 @@ void ScanStore::recover() {
 
 /// `writing_` is held.
 void ScanStore::move_to_bin(const Job& job) {
-  bin_.take(folder(job.id), job, now());
+  bin_.take(folder(job.id), job, now(), clock_.is_right());
   const std::lock_guard lock(mutex_);
   jobs_.erase(job.id);
   ++revision_;
@@ -414,7 +421,7 @@ void ScanStore::discard(std::string_view id) {
   for (const Job& other : others) {
     move_to_bin(other);
   }
-  bin_.remove_before(now() - days_in_bin);
+  expire_bin();
 }
 
 void ScanStore::restore(std::string_view id) {
@@ -487,7 +494,7 @@ void ScanStore::finish_discards() {
         move_from_bin(scan);
       }
     }
-    bin_.remove_before(now() - days_in_bin);
+    expire_bin();
   } catch (const Error& error) {
     log::warning("store", error.what());  // a full or read-only disk: the next start tries again
   }

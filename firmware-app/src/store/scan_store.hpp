@@ -17,6 +17,7 @@
 #include "store/scan_bin.hpp"
 #include "store/scan_id.hpp"
 #include "store/scan_label.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 
@@ -31,7 +32,7 @@ class ScanStore {
   /// Locks the folder, removes unfinished files of a dead process, and marks the scans that it was
   /// making as interrupted, even if that cannot be written.
   /// @throws Error "data-in-use" if another process holds it; if it cannot be made or read
-  explicit ScanStore(std::filesystem::path data);
+  explicit ScanStore(std::filesystem::path data, WallClock clock = {});
 
   /// Makes the folder of a new scan, in state running. Its id sorts after all others, even if the
   /// clock was set back.
@@ -182,6 +183,8 @@ class ScanStore {
   void enter(const std::filesystem::path& beginning, const Job& job);
   void recover();
   void finish_discards();
+  ScanTime now() const;
+  void expire_bin();
   void move_from_bin(const BinnedScan& scan);
   void restore_with_poses(const BinnedScan& first);
   void move_builds_out(const Job& first, const std::string& pose);
@@ -194,6 +197,7 @@ class ScanStore {
   std::filesystem::path data_;
   std::filesystem::path scans_;
   std::filesystem::path platform_;
+  WallClock clock_;
   FileDescriptor lock_;  // keeps the data folder locked
   ScanBin bin_;
   std::mutex writing_;        // serialises writes of a scan's files; locked before mutex_

@@ -5,6 +5,20 @@
 #include <sys/prctl.h>
 
 namespace octurn {
+namespace {
+
+constexpr int enough_cores = 4;  // a Raspberry Pi's
+
+cpu_set_t cores_of_this_thread() {
+  cpu_set_t cores = {};
+  ::sched_getaffinity(0, sizeof cores, &cores);
+  return cores;
+}
+
+// The kernel's refusal leaves the thread where it was, which is no failure.
+void use_cores(const cpu_set_t& cores) { ::sched_setaffinity(0, sizeof cores, &cores); }
+
+}  // namespace
 
 int ask_for_real_time_priority() {
   const sched_param parameters{.sched_priority = real_time_priority};
@@ -12,11 +26,43 @@ int ask_for_real_time_priority() {
 }
 
 int ask_for_punctual_wake_ups() {
+  if (const auto core = core_of_pulses(cores_of_this_thread())) {
+    cpu_set_t own = {};
+    CPU_SET(*core, &own);
+    use_cores(own);
+  }
   const int failure = ask_for_real_time_priority();
   if (failure != 0) {
     ::prctl(PR_SET_TIMERSLACK, 1UL);
   }
   return failure;
+}
+
+std::optional<std::size_t> core_of_pulses(const cpu_set_t& cores) {
+  if (CPU_COUNT(&cores) < enough_cores) {
+    return std::nullopt;
+  }
+  std::size_t last = CPU_SETSIZE - 1;
+  while (!CPU_ISSET(last, &cores)) {
+    --last;
+  }
+  return last;
+}
+
+OtherCores::OtherCores() {
+  const cpu_set_t cores = cores_of_this_thread();
+  if (const auto core = core_of_pulses(cores)) {
+    before_ = cores;
+    cpu_set_t others = cores;
+    CPU_CLR(*core, &others);
+    use_cores(others);
+  }
+}
+
+OtherCores::~OtherCores() {
+  if (before_) {
+    use_cores(*before_);
+  }
 }
 
 void give_up_real_time_priority() {

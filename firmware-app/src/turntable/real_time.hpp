@@ -1,5 +1,10 @@
 #pragma once
 
+#include <sched.h>
+
+#include <cstddef>
+#include <optional>
+
 namespace octurn {
 
 /// The SCHED_FIFO priority of the thread that makes the stepper's pulses: above every ordinary
@@ -13,9 +18,25 @@ int ask_for_real_time_priority();
 
 /// Has the calling thread wake up in time, as far as the system allows it: with
 /// `real_time_priority`, or without the 50 us by which the kernel delays ordinary threads to save
-/// power.
+/// power; and on `core_of_pulses`.
 /// @return 0, or the errno value of the kernel's refusal of the priority
 int ask_for_punctual_wake_ups();
+
+/// The core that the pulses have for themselves: the last one of four or more; else none.
+std::optional<std::size_t> core_of_pulses(const cpu_set_t& cores);
+
+/// Keeps the calling thread, and those that it starts, away from `core_of_pulses` as long as this
+/// lives.
+class OtherCores {
+ public:
+  OtherCores();
+  ~OtherCores();
+  OtherCores(const OtherCores&) = delete;
+  OtherCores& operator=(const OtherCores&) = delete;
+
+ private:
+  std::optional<cpu_set_t> before_;
+};
 
 /// Gives the calling thread the ordinary time-sharing policy (SCHED_OTHER) again.
 void give_up_real_time_priority();

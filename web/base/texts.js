@@ -1,0 +1,123 @@
+// The page's texts in the reader's language. Each language is a file of texts/ with `texts`, the page's own texts by key, and `said`,
+// translations of the scanner's sentences by their English originals. HTML gives keys in data-text, and in data-text-label, -title and
+// -placeholder for the attributes of these names.
+
+import {forget, note, noted} from './storage.js';
+
+/** @typedef {Record<string, string | Partial<Record<Intl.LDMLPluralRule, string>>>} Texts */
+
+const files = {
+  en: () => import('../texts/en.js'),
+  de: () => import('../texts/de.js'),
+  es: () => import('../texts/es.js'),
+  fr: () => import('../texts/fr.js'),
+};
+
+/** The languages' own names. */
+export const languages = {en: 'English', de: 'Deutsch', es: 'Español', fr: 'Français'};
+
+const memory = 'octurn-language';  // storage key of the chosen language
+
+/**
+ * The language to show. Pure.
+ * @param {string | null} chosen @param {readonly string[]} preferred  language tags, most preferred first
+ * @returns {keyof typeof files}
+ */
+export const languageOf = (chosen, preferred) => /** @type {keyof typeof files} */ (
+  [chosen ?? '', ...preferred.map((tag) => tag.toLowerCase().split('-')[0])].find((language) => Object.hasOwn(files, language)) ?? 'en');
+
+/** The locale of numbers and dates: "de-AT" for German, if the browser prefers that. Pure. @param {string} language @param {readonly string[]} preferred */
+export const localeOf = (language, preferred) => preferred.find((tag) => tag.toLowerCase().split('-')[0] === language) ?? language;
+
+/** The language chosen on this page; null: the browser's preference. @returns {string | null} */
+export const chosenLanguage = () => noted(memory);
+
+/** @param {string | null} language  null: the browser's preference */
+export function chooseLanguage(language) {
+  language === null ? forget(memory) : note(memory, language);
+  location.reload();
+}
+
+const isInBrowser = typeof document !== 'undefined';
+const preferred = isInBrowser ? navigator.languages : ['en-US'];
+
+export const language = languageOf(isInBrowser ? chosenLanguage() : null, preferred);
+export const locale = localeOf(language, preferred);
+
+/** @type {{texts: Texts, said: Record<string, string>, rest?: () => Promise<{texts: Texts}>}} rest: loads the texts that a bundled language file leaves out */
+const {texts, said, rest} = await files[language]();
+const plurals = new Intl.PluralRules(locale);
+const plain = new Intl.NumberFormat(locale, {maximumFractionDigits: 1});
+const exact = new Intl.NumberFormat(locale, {maximumFractionDigits: 6, useGrouping: false});
+
+/** Fetches the texts that the page's first view does not need. */
+export async function awaitTexts() {
+  Object.assign(texts, (await rest?.())?.texts);
+}
+
+/** @param {number} value */
+export const number = (value) => plain.format(value);
+
+/** @param {number} value @param {number} digits  after the point */
+export const fixed = (value, digits) =>
+  new Intl.NumberFormat(locale, {minimumFractionDigits: digits, maximumFractionDigits: digits, useGrouping: false}).format(value);
+
+/** @param {string} key */
+export const isText = (key) => Object.hasOwn(texts, key);
+
+/**
+ * @param {string} key
+ * @param {Record<string, string | number>} [values]  `count` selects the plural form
+ * @returns {string}
+ */
+export function text(key, values = {}) {
+  const found = texts[key];
+  const form = typeof found === 'string' ? found : found[plurals.select(Number(values.count))] ?? found.other ?? '';
+  return form.replace(/\{(\w+)\}/g, (_, name) => typeof values[name] === 'number' ? exact.format(/** @type {number} */ (values[name])) : String(values[name]));
+}
+
+const value = /"[^"]*"|-?\d+(?:\.\d+)?/g;  // a value in the scanner's sentences: a name in quotes, or a number
+
+/** The translation of a sentence, with {} for each value, or null. @param {string} sentence */
+const saidOf = (sentence) => Object.hasOwn(said, sentence.replace(value, '{}')) ? said[sentence.replace(value, '{}')] : null;
+
+/** Translates a sentence of which only the parts are known, such as "97 % of it has readings, 640 x 480". @param {string} sentence @returns {string} */
+function translatedParts(sentence) {
+  const parts = sentence.split(/(, |; )/);
+  const isWordless = (/** @type {string} */ part) => !/[a-z]{2}/i.test(part);
+  const isKnown = (/** @type {string} */ part) => isWordless(part) || saidOf(part) !== null;
+  return parts.length > 1 && parts.every(isKnown) ? parts.map((part) => isWordless(part) ? part : translated(part)).join('') : sentence;
+}
+
+/**
+ * Translates a sentence of the scanner. It is looked up with {} in place of its values, which are put into the translation in
+ * order, or by number ({2} is the second). An unknown sentence is returned unchanged.
+ * @param {string} sentence
+ */
+export function translated(sentence) {
+  const values = sentence.match(value) ?? [];
+  const known = saidOf(sentence);
+  if (known === null) {
+    return translatedParts(sentence);
+  }
+  const shown = values.map((one) => /^("|-?0\d)/.test(one) ? one : fixed(Number(one), one.split('.')[1]?.length ?? 0));
+  let next = 0;
+  return known.replace(/\{(\d?)\}/g, (_, place) => shown[place ? Number(place) - 1 : next++] ?? '');
+}
+
+const attributes = {'data-text-label': 'aria-label', 'data-text-title': 'title', 'data-text-placeholder': 'placeholder'};
+
+/** Fills in the texts that HTML names by data-text attributes. @param {ParentNode} root */
+export function fillTexts(root) {
+  for (const template of root.querySelectorAll('template')) {
+    fillTexts(template.content);
+  }
+  for (const element of root.querySelectorAll('[data-text]')) {
+    element.textContent = text(element.getAttribute('data-text') ?? '');
+  }
+  for (const [name, attribute] of Object.entries(attributes)) {
+    for (const element of root.querySelectorAll(`[${name}]`)) {
+      element.setAttribute(attribute, text(element.getAttribute(name) ?? ''));
+    }
+  }
+}

@@ -1,0 +1,75 @@
+// Renders the library of stored scans.
+
+import {element, list, part, setBadge, setText, show} from '../base/dom.js';
+import {text} from '../base/texts.js';
+
+/** @typedef {ReturnType<import('../screen.js').screenOf>} Screen */
+
+/** @param {HTMLElement} frame @param {string} url  empty: no picture */
+function showPicture(frame, url) {
+  const image = part(frame, 'img');
+  const isThere = url !== '' && image.dataset.failed !== url;
+  show(image, isThere);
+  show(part(frame, 'svg'), !isThere);
+  if (isThere && image.getAttribute('src') !== url) {
+    image.onerror = () => {
+      image.dataset.failed = url;
+      showPicture(frame, url);
+    };
+    image.src = url;
+  }
+}
+
+/** @param {Screen} screen */
+function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
+  show(element('no-scans'), isListed && count === 0);
+  show(element('library-tools'), count > 1 || isChoosing);
+  setText(element('library-count'), summary);
+  show(element('no-match'), count > 0 && rows.length === 0);
+  show(element('show-more'), more > 0);
+  setText(element('show-more'), text('library.more', {count: more}));
+  element('choose').setAttribute('aria-pressed', String(isChoosing));
+  show(element('delete-chosen'), isChoosing);
+  setText(element('delete-chosen'), text('library.delete-chosen', {count: chosen}));
+  element('delete-chosen').setAttribute('aria-disabled', String(chosen === 0));
+  list(element('rows'), rows, ({id}) => id, 'row', (item, row) => {
+    item.classList.toggle('current', row.isCurrent);
+    showPicture(part(item, '.scan-picture'), row.picture);
+    const choice = part(item, '.scan-choice');
+    show(choice, isChoosing && !row.isRunning);
+    part(choice, 'input').checked = row.isChosen;
+    part(choice, 'input').setAttribute('aria-label', text('library.choose', {name: row.name}));
+    const name = part(item, '.scan-name');
+    setText(name, row.name);
+    name.href = `#${row.id}`;
+    name.toggleAttribute('aria-current', row.isCurrent);
+    setBadge(part(item, '.badge'), row.badge);
+    setText(part(item, '.scan-when'), row.when);
+    setText(part(item, '.scan-about'), row.about);
+    for (const action of item.querySelectorAll('[data-do]')) {
+      action.setAttribute('aria-label', text('library.action', {action: action.title, name: row.name}));
+    }
+    const download = part(item, '[data-do=download]');
+    show(download, row.download !== null);
+    download.href = row.download ?? '';
+    show(part(item, '[data-do=delete]'), !row.isRunning);
+  });
+}
+
+let isHere = false;  // whether the fragment is loaded
+/** @type {Screen | null} */
+let last = null;
+
+/** @param {Screen} screen */
+export function renderLibrary(screen) {
+  last = screen;
+  if (isHere) {
+    showRows(screen);
+  }
+}
+
+/** Called when the fragment is loaded. */
+export function showLibrary() {
+  isHere = true;
+  last && showRows(last);
+}

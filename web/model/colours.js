@@ -1,0 +1,71 @@
+// The colours of a model, in the order of its STL: three corners for each triangle.
+
+import * as api from '../api/api.js';
+import {element, pressed} from '../base/dom.js';
+import {sentence} from '../base/format.js';
+import {text} from '../base/texts.js';
+
+const vertexBytes = 15;  // x, y, z as floats; red, green, blue
+const faceBytes = 14;  // number of corners, three vertex indices, whether it was filled in
+
+/**
+ * Reads a coloured PLY of the scanner. Its faces are the STL's, in the same order.
+ * @param {ArrayBuffer} file
+ * @returns {Uint8Array} nine levels for each triangle: red, green and blue of its corners
+ * @throws {Error} if the file is truncated or not such a PLY
+ */
+export function readColours(file) {
+  const bytes = new Uint8Array(file);
+  const head = new TextDecoder('latin1').decode(bytes.subarray(0, 1000)).split('end_header\n')[0];
+  const count = (/** @type {string} */ name) => Number(new RegExp(`element ${name} (\\d+)`).exec(head)?.[1]);
+  const vertices = head.length + 'end_header\n'.length;
+  const faces = vertices + count('vertex') * vertexBytes;
+  if (!head.includes('property uchar red') || bytes.length !== faces + count('face') * faceBytes) {
+    throw new Error(text('view.stl-short'));
+  }
+  const view = new DataView(file);
+  const colours = new Uint8Array(9 * count('face'));
+  for (let face = 0, to = 0; face < count('face'); ++face) {
+    for (let corner = 0; corner < 3; ++corner, to += 3) {
+      const from = vertices + view.getUint32(faces + face * faceBytes + 1 + 4 * corner, true) * vertexBytes + 12;
+      colours.set(bytes.subarray(from, from + 3), to);
+    }
+  }
+  return colours;
+}
+
+/** @param {string} url  of a model's STL @returns {Promise<Uint8Array>} as from `readColours` */
+async function fetchColours(url) {
+  const stream = await api.model(url.replace(/stl$/, 'ply?colour=true'), new AbortController().signal);
+  return readColours(await new Response(stream).arrayBuffer());
+}
+
+const isPressed = () => element('colours').getAttribute('aria-pressed') === 'true';
+
+/**
+ * Shows or hides the model's colours.
+ * @param {Object} shown
+ * @param {() => import('./viewer.js').Viewer | undefined} shown.viewer
+ * @param {() => string | null} shown.url  the STL of the shown model, if it has colours
+ * @param {(words: string) => void} shown.say
+ */
+export async function toggleColours({viewer, url, say}) {
+  const of = url();
+  pressed('colours', !isPressed());
+  if (!isPressed() || of === null) {
+    viewer()?.paint(null);
+    return;
+  }
+  say(text('view.loading'));
+  try {
+    const colours = await fetchColours(of);
+    if (url() === of && isPressed()) {  // unless another model is shown by now
+      viewer()?.paint(colours);
+    }
+    say('');
+  } catch (error) {
+    const isStill = url() === of;
+    pressed('colours', !isStill && isPressed());
+    say(isStill ? sentence(error instanceof Error ? error.message : String(error)) : '');
+  }
+}

@@ -1,0 +1,300 @@
+// The 3D view of a model in millimetres, Z up, on a drawing of the platform.
+
+import {
+  BufferAttribute, BufferGeometry, Group, HemisphereLight, Mesh, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3,
+  WebGLRenderer,
+} from '../three.js';
+import {fitToCanvas, onClick} from '../base/canvas.js';
+import {clayMaterial, lightsBeside, platform, ringStep} from './clay.js';
+import {measureMark} from './measure_mark.js';
+import {smoothNormals} from './normals.js';
+import {placeAt} from './pick.js';
+import {ballOf, placesMark} from './places_mark.js';
+import {restingSide} from './resting_pose.js';
+
+/** @typedef {import('./stl.js').Mesh} StlMesh */
+
+const maxSmooth = 200_000;  // triangles; those of a larger model are small enough as they are
+const uncut = 1e9;  // millimetres, above every model
+const keyTurn = Math.PI / 24;  // radians
+const down = new Vector3(0, 0, -1);
+const samplesKept = 5000;  // sampled vertices, from which the pose and the height range of a model on another side are computed
+const firstSight = new Vector3(0.42, -0.83, 0.37);  // initial direction from the model to the camera
+
+export class Viewer {
+  #canvas;
+  #onTurning;
+  #renderer;
+  #camera = new PerspectiveCamera(32);
+  #scene = new Scene();
+  #edges = {value: 0};
+  #filled = {value: 0};
+  #painted = {value: 0};
+  #top = {value: uncut};
+  #heights = [0, 0];  // height range of the model in its current pose, millimetres
+  #uprightHeights = [0, 0];
+  /** @type {Vector3[]} */
+  #samples = [];
+  #controls;
+  #subject = new Group();  // the model and the platform below it
+  /** @type {any} */
+  #model = null;
+  /** @type {any} */
+  #places = null;
+  /** @type {any} */
+  #measure = null;
+  #isAimed = false;  // whether the user has moved the camera
+  #isFrameDue = false;
+  #drawnAt = 0;
+
+  /**
+   * @param {HTMLCanvasElement} canvas
+   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onPlace: (place_mm: number[]) => void}} events  onPlace: called for a
+   *     click on the model
+   * @throws {Error} where there is no WebGL
+   */
+  constructor(canvas, {onTurning, onLost, onPlace}) {
+    this.#canvas = canvas;
+    this.#onTurning = onTurning;
+    this.#renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
+    this.#camera.up.set(0, 0, 1);
+    this.#scene.add(new HemisphereLight(0xeaf6f8, 0x33434b, 1.5), this.#camera, this.#subject);
+    lightsBeside(this.#camera);
+    this.#controls = new OrbitControls(this.#camera, canvas);
+    canvas.style.touchAction = 'pan-y';  // a vertical swipe scrolls the page, as the picture may be as wide as the page
+    this.#controls.enableDamping = true;
+    this.#controls.autoRotateSpeed = 1.6;
+    this.#controls.addEventListener('change', () => this.#draw());
+    this.#controls.addEventListener('start', () => {
+      this.#isAimed = true;
+      this.turn(false);
+    });
+    new ResizeObserver(() => this.#resize()).observe(canvas);
+    canvas.addEventListener('webglcontextlost', onLost);
+    canvas.addEventListener('keydown', (event) => this.#key(event));
+    onClick(canvas, (x, y) => {
+      const place = this.#model && placeAt(this.#renderer, this.#camera, this.#model, this.#top.value, x, y);
+      place && onPlace(place);
+    });
+  }
+
+  /**
+   * @param {StlMesh} mesh  its positions are moved to the GPU and not kept in memory
+   * @param {{isFirst?: boolean, isGrowing?: boolean}} [growth]  isFirst: false keeps the user's camera, for a further mesh of the same
+   *     object; isGrowing: it is replaced soon, and shaded flat
+   */
+  show({positions, filled, min, max}, {isFirst = true, isGrowing = false} = {}) {
+    const isTurning = this.#controls.autoRotate;
+    this.clear();
+    const geometry = new BufferGeometry();
+    const isSmooth = !isGrowing && positions.length <= 9 * maxSmooth;
+    if (isSmooth) {
+      geometry.setAttribute('normal', new BufferAttribute(smoothNormals(positions), 3, true));
+    }
+    const attribute = new BufferAttribute(positions, 3);
+    attribute.onUpload(() => {
+      attribute.array = /** @type {any} */ (null);
+    });
+    geometry.setAttribute('position', attribute);
+    if (filled) {  // without the attribute, WebGL reads 0
+      geometry.setAttribute('filled', new BufferAttribute(filled, 1, true));
+    }
+    const middle = new Vector3(...min).add(new Vector3(...max)).divideScalar(2);
+    geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // cannot be computed later, without the positions
+    this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled, painted: this.#painted, top: this.#top, isSmooth}));
+    this.#uprightHeights = this.#heights = [min[2], max[2]];
+    const corners = positions.length / 3;
+    this.#samples = Array.from({length: Math.min(corners, samplesKept)}, (_, i) =>
+      new Vector3().fromArray(positions, 3 * Math.floor(i * corners / Math.min(corners, samplesKept))));
+    const reach = Math.hypot(Math.max(-min[0], max[0]), Math.max(-min[1], max[1]));
+    this.#subject.add(this.#model, platform(Math.max(3, Math.ceil(reach / ringStep)) * ringStep));
+    this.#resize();
+    if (isFirst) {
+      this.reset();
+      return;
+    }
+    this.turn(isTurning);
+    if (!this.#isAimed) {
+      this.#aim(this.#camera.position.clone().sub(this.#controls.target).normalize());
+    }
+  }
+
+  /** Frees GPU memory. */
+  clear() {
+    this.#subject.traverse((/** @type {any} */ object) => {
+      object.geometry?.dispose();
+      object.material?.dispose();
+    });
+    this.#subject.clear();
+    this.#model = null;
+    this.#places = null;
+    this.#measure = null;
+    this.#painted.value = 0;
+    this.turn(false);
+  }
+
+  /** Aims the camera at the whole model, from the sensor's side and slightly above. */
+  reset() {
+    if (this.#model) {
+      this.#isAimed = false;
+      this.#aim(firstSight);
+    }
+  }
+
+  /** Rotates the model so that it rests on the side that has a place. @param {number[] | null} place_mm  null: as scanned */
+  lay(place_mm) {
+    const {quaternion, position} = this.#model;
+    if (place_mm) {
+      quaternion.setFromUnitVectors(restingSide(this.#samples, this.#model.worldToLocal(new Vector3(...place_mm))), down);
+      const {x, y} = this.#model.geometry.boundingSphere.center.clone().applyQuaternion(quaternion);
+      const heights = this.#samples.map((sample) => sample.clone().applyQuaternion(quaternion).z);
+      this.#heights = [0, Math.max(...heights) - Math.min(...heights)];
+      position.set(-x, -y, -Math.min(...heights));
+    } else {
+      quaternion.identity();
+      position.setScalar(0);
+      this.#heights = this.#uprightHeights;
+    }
+    this.#model.updateMatrixWorld();
+    this.showPlaces([]);
+    this.reset();
+  }
+
+  /** Marks places of the model, and aims the camera at them. @param {number[][]} points_mm  empty: removes the marks */
+  showPlaces(points_mm) {
+    this.#places?.geometry.dispose();
+    this.#places?.material.dispose();
+    this.#places?.removeFromParent();
+    this.#places = null;
+    if (this.#model && points_mm.length > 0) {
+      this.#places = placesMark(points_mm);
+      this.#subject.add(this.#places);
+      this.#places.applyMatrix4(this.#model.matrixWorld);
+      const {center, radius} = this.#ball();
+      const ball = ballOf(points_mm).applyMatrix4(this.#model.matrixWorld);
+      const outwards = ball.center.clone().sub(center);
+      const sight = outwards.length() > radius / 20 ? outwards.normalize().setZ(Math.max(outwards.z, 0.25)).normalize() : firstSight;
+      this.#isAimed = true;
+      this.turn(false);
+      this.#aim(sight, {center: ball.center, radius: Math.max(1.4 * ball.radius, radius / 2)});
+    }
+    this.#draw();
+  }
+
+  /** Draws a line between two points, or a dot. @param {number[][]} points_mm  empty: removes it */
+  showMeasure(points_mm) {
+    this.#measure?.traverse((/** @type {any} */ object) => {
+      object.geometry?.dispose();
+      object.material?.dispose();
+    });
+    this.#measure?.removeFromParent();
+    this.#measure = points_mm.length > 0 ? measureMark(points_mm) : null;
+    this.#measure && this.#subject.add(this.#measure);
+    this.#draw();
+  }
+
+  /**
+   * Cuts off the model above a share of its height.
+   * @param {number} share  1: no cut
+   * @returns {number} the height of the cut, millimetres
+   */
+  cut(share) {
+    const height = this.#heights[0] + share * (this.#heights[1] - this.#heights[0]);
+    this.#top.value = share < 1 ? height : uncut;
+    this.#draw();
+    return height;
+  }
+
+  /** The bounding sphere of the model in its current pose. */
+  #ball() {
+    return this.#model.geometry.boundingSphere.clone().applyMatrix4(this.#model.matrixWorld);
+  }
+
+  /** Aims the camera at a sphere, by default around the whole model. @param {Vector3} sight  unit vector from it to the camera */
+  #aim(sight, {center, radius} = this.#ball()) {
+    const narrow = Math.min(1, this.#camera.aspect);
+    const distance = 1.05 * radius / (Math.sin(this.#camera.fov / 2 * Math.PI / 180) * narrow);
+    this.#camera.position.copy(center).addScaledVector(sight, distance);
+    this.#camera.near = distance / 100;
+    this.#camera.far = distance * 20;
+    this.#camera.updateProjectionMatrix();
+    this.#controls.minDistance = distance / 20;
+    this.#controls.maxDistance = distance * 4;
+    this.#controls.target.copy(center);
+    this.#controls.update();
+    this.#draw();
+  }
+
+  /** @param {boolean} isTurning  whether the camera rotates automatically */
+  turn(isTurning) {
+    if (this.#controls.autoRotate !== isTurning) {
+      this.#controls.autoRotate = isTurning;
+      this.#onTurning(isTurning);
+    }
+    this.#draw();
+  }
+
+  /** @param {boolean} areShown */
+  showEdges(areShown) {
+    this.#edges.value = areShown ? 0.75 : 0;
+    this.#draw();
+  }
+
+  /** @param {boolean} isShown  whether filled-in surface has its own colour */
+  showFilled(isShown) {
+    this.#filled.value = isShown ? 0.85 : 0;
+    this.#draw();
+  }
+
+  /** @param {Uint8Array | null} colours  red, green and blue of each corner of the shown model; null: clay */
+  paint(colours) {
+    const geometry = this.#model?.geometry;
+    this.#painted.value = colours && colours.length === 3 * geometry?.attributes.position.count ? 1 : 0;
+    this.#painted.value && geometry.setAttribute('paint', new BufferAttribute(colours, 3, true));
+    this.#draw();
+  }
+
+  #resize() {
+    if (fitToCanvas(this.#renderer, this.#camera, this.#canvas)) {
+      this.#draw();
+    }
+  }
+
+  /** Draws in the next animation frame, and continues as long as something moves. */
+  #draw() {
+    if (this.#isFrameDue || !this.#model) {
+      return;
+    }
+    this.#isFrameDue = true;
+    requestAnimationFrame((now) => {
+      this.#isFrameDue = false;
+      const seconds = Math.min((now - this.#drawnAt) / 1000, 0.1);
+      this.#drawnAt = now;
+      if (this.#canvas.clientWidth > 0 && this.#model) {
+        this.#controls.update(seconds);  // requests the next frame if it moves the camera
+        this.#renderer.render(this.#scene, this.#camera);
+      }
+    });
+  }
+
+  /** @param {KeyboardEvent} event */
+  #key(event) {
+    /** @type {Record<string, () => void>} */
+    const moves = {
+      ArrowLeft: () => this.#controls.rotateLeft(keyTurn),
+      ArrowRight: () => this.#controls.rotateLeft(-keyTurn),
+      ArrowUp: () => this.#controls.rotateUp(keyTurn),
+      ArrowDown: () => this.#controls.rotateUp(-keyTurn),
+      '+': () => this.#controls.dollyIn(0.9),
+      '-': () => this.#controls.dollyOut(0.9),
+    };
+    const move = moves[event.key];
+    if (move && !event.ctrlKey && !event.metaKey && !event.altKey) {
+      event.preventDefault();
+      this.#isAimed = true;
+      this.turn(false);
+      move();
+      this.#draw();
+    }
+  }
+}

@@ -1,0 +1,67 @@
+// The texts on a model's quality. Pure: the scanner's verdict in, texts and links out.
+
+import {sentence} from '../base/format.js';
+import {text} from '../base/texts.js';
+import {reasonText} from '../base/wording.js';
+
+/** @typedef {import('../api/api.js').Model} Model */
+
+/** @typedef {import('../api/api.js').Reason} Reason */
+/** @typedef {{text: string, href: string}} Action  link to a reason's remedy */
+
+const calibrate = {text: text('cure.calibrate'), href: '#calibrate'};
+const space = {text: text('cure.space'), href: '#calibrate'};
+const flatten = {text: text('cure.flatten'), href: '#calibrate'};
+const again = {text: text('cure.again'), href: '#'};
+
+/** @type {Record<string, Action>} */
+const actions = {
+  'stops-disagree': calibrate,
+  'floats': calibrate,
+  'sunk': calibrate,
+  'no-map': flatten,
+  'cut-by-box': space,
+  'empty': again,
+  'moved': again,
+  'little-seen': again,
+  'filled-far': again,
+  'parts-dropped': again,
+  'part-missing': calibrate,
+  'coarser': space,
+};
+
+/** Findings of a calibration that are not part of a verdict. */
+const improvable = ['no-map', 'focal-length', 'wobble'];
+
+/** @param {string | undefined} code @returns {Action | null} */
+export const actionOf = (code) => actions[code ?? ''] ?? null;
+
+const verdicts = {
+  good: {tone: 'good', icon: 'ok'},
+  look: {tone: 'warn', icon: 'warning'},
+  bad: {tone: 'bad', icon: 'fault'},
+};
+
+/** @param {Model} model @returns {{tone: string, text: string} | null} null for a model without a verdict */
+export const badgeOf = ({quality}) => quality ? {tone: verdicts[quality.verdict].tone, text: text(`verdict.${quality.verdict}-short`)} : null;
+
+/**
+ * @param {Model} model
+ * @param {Reason[]} findings  of the scan's calibration; some do not affect the verdict but could improve the next model
+ */
+export function verdictOf({quality, watertight}, findings = []) {
+  if (!quality) {
+    return null;
+  }
+  const {tone, icon} = verdicts[quality.verdict];
+  return {
+    tone,
+    icon,
+    title: text(`verdict.${quality.verdict}`),
+    text: quality.verdict !== 'good' ? '' :
+      text(watertight ? 'verdict.good-about' : 'verdict.open'),
+    reasons: [...quality.reasons, ...findings.filter(({code}) => improvable.includes(code ?? ''))].map((reason) => ({
+      key: `${reason.code} ${reason.detail}`, detail: sentence(reasonText(reason)), hint: sentence(reason.hint), action: actionOf(reason.code),
+      places: reason.places_mm ?? []})),
+  };
+}

@@ -7,8 +7,9 @@
 
 namespace octurn {
 
-/// The true pose of a simulated sensor that was mounted by eye, while the told pose is nominal. The
-/// error makes the platform appear too low, so that it stays outside of a model's clip box.
+/// The true pose of a simulated sensor that was mounted by eye, while the configured pose is
+/// nominal. The error makes the platform appear too low, so that it stays outside of a model's clip
+/// box.
 /// @param times  factor of the error, 4.7 mm at the platform's centre and 1 degree about it; 0:
 /// none
 /// @return optical frame to platform frame, metres

@@ -16,11 +16,11 @@ namespace octurn {
 /// `misalignment`, `wall`, `speed`, `silent-after` and `lost-after`. In MESH, `%` and `?` are
 /// written `%25` and `%3F`.
 struct Simulation {
-  std::string mesh_file = {};       ///< STL in millimetres, Z up; empty: the simulator's own object
-  std::uint32_t seed = 1;           ///< of noise and pattern: same seed, same frames
-  double noise = 1.0;               ///< times a real Kinect's; 0 leaves quantisation and shadow
-  double pattern = 1.0;             ///< fixed pattern error, times a real Kinect's; 0: none
-  double misalignment = 1.0;        ///< true pose's error, times 5 mm and 1 degree; 0: as told
+  std::string mesh_file = {};  ///< STL in millimetres, Z up; empty: the simulator's own object
+  std::uint32_t seed = 1;      ///< of noise and pattern: same seed, same frames
+  double noise = 1.0;          ///< times a real Kinect's; 0 leaves quantisation and shadow
+  double pattern = 1.0;        ///< fixed pattern error, times a real Kinect's; 0: none
+  double misalignment = 1.0;   ///< true pose's error, times 5 mm and 1 degree; 0: as configured
   std::optional<double> wall = {};  ///< metres to a wall that it faces instead of the platform
   double speed = 1.0;               ///< times 30 frames a second, as far as the processor keeps up
   std::optional<int> silent_after = {};  ///< frames, then none, as if the sensor had hung

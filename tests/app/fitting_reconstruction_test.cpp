@@ -65,7 +65,7 @@ TEST(FittingReconstruction, KeepsAScanWhoseModelDoesNotFit) {
   Rig rig({.sensor_uri = "octurn-simulator://?speed=20", .speed = 20});
   ScanSettings settings = few_snapshots();
   settings.method = Method::solid;
-  settings.pose = PoseSource::told;
+  settings.pose = PoseSource::configured;
   settings.leaf_size = 0.0005;
   const auto model =
       run_scan(settings, {.threads = 1, .memory_bytes = 36 * mb}, folder.path(), rig, {}, {});

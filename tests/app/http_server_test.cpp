@@ -81,12 +81,12 @@ TEST(HttpServer, AnswersAHeadWithoutTheBody) {
 /// Sends a request on a kept-alive connection, and reads its response, whose body has 4 bytes.
 std::string ask_on(const FileDescriptor& socket) {
   send_text(socket, "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: keep-alive\r\n\r\n");
-  std::string told;
+  std::string configured;
   for (char byte = 0;
-       !told.ends_with("\r\n\r\nbody") && ::recv(socket.number(), &byte, 1, 0) == 1;) {
-    told += byte;
+       !configured.ends_with("\r\n\r\nbody") && ::recv(socket.number(), &byte, 1, 0) == 1;) {
+    configured += byte;
   }
-  return told;
+  return configured;
 }
 
 TEST(HttpServer, KeepsTheConnectionOfWhoAsksForIt) {

@@ -77,7 +77,7 @@ TEST_F(LaserCalibrationOfARig, FindsATurnedLaserWithATurnAndTellsItTheNextScan) 
   EXPECT_EQ(kept.origin, PoseOrigin::turn);
   EXPECT_EQ(kept.camera, "simulated-laser");
   ScanSettings next = settings(4);
-  next.pose = PoseSource::told;
+  next.pose = PoseSource::configured;
   const Scan scanned = scan(scanner, next);
   EXPECT_EQ(scanned.laser->lasers[0].normal, left.normal);
   EXPECT_EQ(scanned.laser->lasers[0].distance, left.distance);
@@ -99,7 +99,7 @@ TEST_F(LaserCalibrationOfARig, RemembersAcrossAStartWhatAScanHasSolved) {
   Scanner scanner(rig_.options(speed), {}, store_);
   EXPECT_EQ(scanner.calibration().records({}).front().origin, PoseOrigin::scan);
   ScanSettings next = settings(4);
-  next.pose = PoseSource::told;
+  next.pose = PoseSource::configured;
   EXPECT_EQ(scan(scanner, next).laser->lasers[0].normal, solved);
 }
 
@@ -121,7 +121,7 @@ TEST_F(LaserCalibrationOfARig, IsOfItsOwnCamera) {
   const Laser another{.name = "left", .normal = Eigen::Vector3d::UnitX(), .distance = 0.1};
   scanner.calibration().set(to_record(CalibrationReport{}, PoseOrigin::turn, "other", {another}));
   ScanSettings next = settings(4);
-  next.pose = PoseSource::told;
+  next.pose = PoseSource::configured;
   EXPECT_EQ(scan(scanner, next).laser->lasers[0].normal, told_left());
 }
 
@@ -133,9 +133,9 @@ TEST_F(LaserCalibrationOfARig, StaysAsItIsWhereATurnIsRefused) {
   const CalibrationRun run = turn(scanner);
   ASSERT_EQ(run.state, CalibrationRun::State::refused);
   EXPECT_FALSE(run.report->calibration.reason.empty());
-  ScanSettings told;
-  told.platform_from_sensor = told_.platform_from_sensor;
-  EXPECT_EQ(scanner.calibration().records(told).front().origin, PoseOrigin::drawing);
+  ScanSettings configured;
+  configured.platform_from_sensor = told_.platform_from_sensor;
+  EXPECT_EQ(scanner.calibration().records(configured).front().origin, PoseOrigin::drawing);
 }
 
 TEST_F(LaserCalibrationOfARig, EndsWithItsLasersOffWhenATurnIsCancelled) {

@@ -85,9 +85,9 @@ struct Timing {
 /// @param disk  seconds at the end of each stop to write its last picture and scan.json
 Timing time_400_stops(double readout, double disk, const Motion& motion) {
   Course course;
-  LaserSettings told;
-  told.lens = {.width = width, .height = height};
-  Rig rig({.speed = 1e6, .laser = told, .open_camera = [&](const LaserSettings&) {
+  LaserSettings configured;
+  configured.lens = {.width = width, .height = height};
+  Rig rig({.speed = 1e6, .laser = configured, .open_camera = [&](const LaserSettings&) {
              return CameraAndLasers{.camera = std::make_unique<RunningCamera>(course, readout),
                                     .set_line = [&](std::size_t, bool on) {
                                       course.lit_at =
@@ -140,7 +140,7 @@ ScanSettings settings(int stops) {
   use_laser_capture_defaults(few);
   few.snapshots = stops;
   few.leaf_size = 0.004;
-  few.pose = PoseSource::told;
+  few.pose = PoseSource::configured;
   return few;
 }
 

@@ -119,7 +119,7 @@ std::string move_told(const Model& model) {
 
 TEST(LastLook, TellsByHowMuchTheObjectMovedInMidScan) {
   const TemporaryFolder folder;
-  const auto model = scan({1.5, -1.5, 0}, stops / 2, PoseSource::told, folder.path());
+  const auto model = scan({1.5, -1.5, 0}, stops / 2, PoseSource::configured, folder.path());
   ASSERT_TRUE(model);
   const std::string detail = move_told(*model);
   ASSERT_NE(detail.find("moved by "), std::string::npos);
@@ -136,7 +136,7 @@ TEST(LastLook, SeesAMoveAfterTheLastStopThatNoSnapshotShows) {
 }
 
 TEST(LastLook, TellsNothingOfAnObjectAtRest) {
-  for (const PoseSource pose : {PoseSource::told, PoseSource::solved}) {
+  for (const PoseSource pose : {PoseSource::configured, PoseSource::solved}) {
     const TemporaryFolder folder;
     const auto model = scan({0, 0, 0}, stops / 2, pose, folder.path());
     ASSERT_TRUE(model);
@@ -149,7 +149,7 @@ TEST(LastLook, TellsNothingOfAnObjectAtRest) {
 
 TEST(LastLook, IsInNoModelAndInNoSnapshot) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(scan({0, 0, 0}, stops, PoseSource::told, folder.path()));
+  ASSERT_TRUE(scan({0, 0, 0}, stops, PoseSource::configured, folder.path()));
   const std::string model = content_of(folder.path() / "Scan.stl");
   EXPECT_EQ(read_scan(folder.path()).shots.size(), std::size_t{stops});
   EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "snapshots"), {}), stops);
@@ -161,7 +161,7 @@ TEST(LastLook, IsInNoModelAndInNoSnapshot) {
   Rig rig({.open_sensor = [](const std::string&) -> std::unique_ptr<DepthSensor> {
     throw Error(ErrorCode::sensor_missing, "none is plugged in");
   }});
-  ASSERT_TRUE(run_scan(eight_stops(PoseSource::told), {}, folder.path(), rig, {}, {}));
+  ASSERT_TRUE(run_scan(eight_stops(PoseSource::configured), {}, folder.path(), rig, {}, {}));
   EXPECT_TRUE(content_of(folder.path() / "Scan.stl") == model);
   EXPECT_EQ(content_of(folder.path() / "scan.json"), description);
 }

@@ -22,7 +22,7 @@ ScanSettings settings(int stops) {
   use_laser_capture_defaults(few);
   few.snapshots = stops;
   few.leaf_size = 0.002;
-  few.pose = PoseSource::told;
+  few.pose = PoseSource::configured;
   return few;
 }
 

@@ -14,7 +14,7 @@ using MergeRuleTest = ScannerTest;
 ScanSettings unsolved() {
   ScanSettings settings = few_snapshots(12);
   settings.platform_from_sensor = wrong_pose();
-  settings.pose = PoseSource::told;
+  settings.pose = PoseSource::configured;
   return settings;
 }
 

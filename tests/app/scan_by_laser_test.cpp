@@ -27,7 +27,7 @@ ScanSettings settings() {
   use_laser_capture_defaults(few);
   few.snapshots = stops;
   few.leaf_size = 0.004;
-  few.pose = PoseSource::told;
+  few.pose = PoseSource::configured;
   return few;
 }
 

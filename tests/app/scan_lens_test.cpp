@@ -23,7 +23,7 @@ ScanSettings few_stops() {
   use_laser_capture_defaults(few);
   few.snapshots = 6;
   few.leaf_size = 0.004;
-  few.pose = PoseSource::told;
+  few.pose = PoseSource::configured;
   return few;
 }
 

@@ -16,10 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Settings with the told sensor pose, so that nothing is solved.
+/// Settings with the configured sensor pose, so that nothing is solved.
 ScanSettings quick(int snapshots = 3) {
   ScanSettings settings = few_snapshots(snapshots);
-  settings.pose = PoseSource::told;
+  settings.pose = PoseSource::configured;
   return settings;
 }
 

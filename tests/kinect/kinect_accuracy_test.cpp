@@ -152,7 +152,7 @@ Outcome scan(double loss) {
   Rig rig({.speed = 100, .open_sensor = [&](const std::string&) {
              return std::make_unique<WireSensor>(loss, sent);
            }});
-  const ScanSettings settings{.snapshots = 8, .leaf_size = 0.002, .pose = PoseSource::told};
+  const ScanSettings settings{.snapshots = 8, .leaf_size = 0.002, .pose = PoseSource::configured};
   EXPECT_TRUE(run_scan(settings, {}, folder.path(), rig, {}, {}));
   return {.error_mm = mean_error_mm(content_of(folder.path() / "Scan.stl")), .frames = sent};
 }

@@ -15,7 +15,7 @@
 
 namespace octurn {
 
-/// The depth images of one turn of the platform, and the pose that the rig was told.
+/// The depth images of one turn of the platform, and the configured pose of the rig.
 struct CalibrationTurn {
   Intrinsics intrinsics = {};
   /// Optical frame to platform frame, metres.
@@ -45,17 +45,17 @@ struct CalibrationReport {
   bool accepted = false;
   std::string reason = {};  ///< why it was refused, for people; empty if accepted
   /// If accepted: optical frame to platform frame, metres. Depth images do not show the rotation
-  /// about the platform's axis: it is that of the told pose.
+  /// about the platform's axis: it is that of the configured pose.
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
-  double shift = 0;            ///< metres: from the told axis to the solved one, on the platform
-  double lift = 0;             ///< metres: from the told surface to the solved one, along the axis
-  double tilt = 0;             ///< radians: between the told axis and the solved one
+  double shift = 0;  ///< metres: from the configured axis to the solved one, on the platform
+  double lift = 0;   ///< metres: from the configured surface to the solved one, along the axis
+  double tilt = 0;   ///< radians: between the configured axis and the solved one
   double position_sigma = 0;   ///< metres, of the axis, 5 cm above the platform
   double direction_sigma = 0;  ///< radians, of the axis
-  /// Metres: median distance between the surfaces that two stops saw, with the told pose.
+  /// Metres: median distance between the surfaces that two stops saw, with the configured pose.
   double before = 0;
   double after = 0;  ///< the same with the solved pose
-  /// Radians: each stop's measured angle less its told one. 0 at the first stop; empty if too
+  /// Radians: each stop's measured angle less its configured one. 0 at the first stop; empty if too
   /// little of the object was seen.
   std::vector<double> stop_offsets = {};
   std::vector<CalibrationFinding> findings = {};
@@ -65,7 +65,7 @@ struct CalibrationReport {
   /// holds only together with them.
   bool optics_differ = false;
 
-  /// Whether the told pose is within three sigma of the solved one, or within 0.1 mm and 0.05
+  /// Whether the configured pose is within three sigma of the solved one, or within 0.1 mm and 0.05
   /// degrees, and the sensor's own optics hold.
   bool confirms_told() const;
 };
@@ -94,8 +94,8 @@ struct LaserCalibration {
 ///
 /// Lines on the platform must lie in its plane, and points of the object measured with one laser on
 /// the surface measured with the others. Without an object, or with one laser, only the first
-/// constraint exists: then the pose stays as told, and of each laser's plane the distance and the
-/// rotation about the vertical are solved. docs/laser.md has the derivation.
+/// constraint exists: then the pose stays as configured, and of each laser's plane the distance and
+/// the rotation about the vertical are solved. docs/laser.md has the derivation.
 ///
 /// Deterministic for any number of threads.
 /// @throws Error  as `stored_snapshots`; "scan-malformed" if it is not one turn by laser line
@@ -103,18 +103,18 @@ struct LaserCalibration {
 LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Scan& scan,
                                   int threads, const std::stop_token& stop = {});
 
-/// The plane of the platform's surface, in the platform frame of the told pose.
+/// The plane of the platform's surface, in the platform frame of the configured pose.
 struct PlatformSurface {
-  double height = 0;  ///< metres: z where the told axis meets it
-  /// dz/dx and dz/dy; 0 if the told pose is right.
+  double height = 0;  ///< metres: z where the configured axis meets it
+  /// dz/dx and dz/dy; 0 if the configured pose is right.
   Eigen::Vector2d slope = Eigen::Vector2d::Zero();
-  double tilt = 0;  ///< radians, between its normal and the told axis
+  double tilt = 0;  ///< radians, between its normal and the configured axis
 };
 
 /// Fits the platform's plane to one depth image, as `calibrate` does to those of a turn. An object
 /// may stand on the platform.
-/// @param platform_from_sensor  as told: optical frame to platform frame, metres
-/// @return nothing if no surface is seen within 60 mm and 6 degrees of the told one
+/// @param platform_from_sensor  as configured: optical frame to platform frame, metres
+/// @return nothing if no surface is seen within 60 mm and 6 degrees of the configured one
 /// @throws std::invalid_argument  if the frame has another size than the intrinsics say
 std::optional<PlatformSurface> measure_platform_surface(
     const DepthFrame& frame, const Intrinsics& intrinsics,

@@ -101,7 +101,7 @@ struct ReconstructOptions {
 
 /// `SolidOptions::truncation` of scans by laser line, metres. It follows from the spacing of the
 /// lines, one or two millimetres, and not from the noise, 0.05 to 0.2 mm: with a thinner band
-/// behind the surface inside cannot be told from outside between two lines.
+/// behind the surface inside cannot be known from outside between two lines.
 inline constexpr double laser_truncation = 0.002;
 
 /// Leaf size and target error of models of scans by laser line, metres: they are finer than a depth

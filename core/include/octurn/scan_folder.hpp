@@ -51,8 +51,9 @@ struct SolvedPose {
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();  ///< metres
   double position_sigma = 0;                                               ///< metres
   double direction_sigma = 0;                                              ///< radians
-  double before = 0;  ///< metres: median distance between two stops' surfaces with the told pose
-  double after = 0;   ///< the same with this pose
+  double before =
+      0;  ///< metres: median distance between two stops' surfaces with the configured pose
+  double after = 0;                ///< the same with this pose
   std::vector<Laser> lasers = {};  ///< of a scan by laser line: solved planes, without `source`
   std::optional<SolvedOptics> optics = {};  ///< of a depth sensor, if they replace what was known
 };
@@ -62,7 +63,8 @@ struct ScanPose {
   /// Platform frame of this pose at angle 0 to the object's frame, which is the first pose's
   /// platform frame; metres. Nothing: not known yet.
   std::optional<Eigen::Isometry3d> object_from_platform = {};
-  Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();  ///< as told, metres
+  Eigen::Isometry3d platform_from_sensor =
+      Eigen::Isometry3d::Identity();  ///< as configured, metres
   std::optional<SolvedPose> solved = {};
   Box clip = {};  ///< metres, platform frame of this pose
 };
@@ -74,7 +76,7 @@ struct Scan {
   Intrinsics intrinsics = {};               ///< `depth_unit` is not used by laser line
   std::optional<LaserCamera> laser = {};    ///< nothing: a depth sensor
   std::optional<SensorOptics> optics = {};  ///< of a depth sensor, if known before the scan
-  /// As the rig was told when the scan was taken; metres.
+  /// As configured when the scan was taken; metres.
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   std::optional<SolvedPose> solved = {};
   Box clip = {};  ///< metres, platform frame
@@ -87,12 +89,12 @@ struct Scan {
 /// The file of the sensor's map in a scan folder.
 inline constexpr const char* sensor_map_file = "sensor-map.png";
 
-/// The sensor's pose for models: the solved one, else the told one.
+/// The sensor's pose for models: the solved one, else the configured one.
 inline const Eigen::Isometry3d& model_pose(const Scan& scan) {
   return scan.solved ? scan.solved->platform_from_sensor : scan.platform_from_sensor;
 }
 
-/// The lasers with their planes for models: the solved ones, else the told ones.
+/// The lasers with their planes for models: the solved ones, else the configured ones.
 /// @param solved  of the scan, or of one of its poses
 std::vector<Laser> model_lasers(const LaserCamera& camera, const std::optional<SolvedPose>& solved);
 

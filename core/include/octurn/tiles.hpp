@@ -21,7 +21,8 @@ namespace octurn {
 /// is no platform. Space is tiled by root cubes; each tile in which something is seen is
 /// reconstructed on its own, and the surfaces join to one closed surface.
 ///
-/// The method `solid` makes a closed shell of every surface, as inside cannot be told from outside.
+/// The method `solid` makes a closed shell of every surface, as inside cannot be known from
+/// outside.
 
 /// A reconstruction of a space by the options' method. `placements` must be empty.
 /// @param spool  a folder; finished tiles are kept in an unnamed file on its disk until the surface

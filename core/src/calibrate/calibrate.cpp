@@ -118,9 +118,9 @@ std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& vi
                     radians_from_degrees(tight_direction_deg), threads);
 }
 
-/// Sets the distances of a solution from the told pose.
-void compare_with_told(CalibrationReport& report, const Eigen::Isometry3d& told) {
-  const Eigen::Isometry3d solved_from_told = report.platform_from_sensor * told.inverse();
+/// Sets the distances of a solution from the configured pose.
+void compare_with_told(CalibrationReport& report, const Eigen::Isometry3d& configured) {
+  const Eigen::Isometry3d solved_from_told = report.platform_from_sensor * configured.inverse();
   const Vector3d origin = solved_from_told.translation();
   const Vector3d axis = solved_from_told.linear() * Vector3d::UnitZ();
   report.shift = std::hypot(origin.x(), origin.y());
@@ -148,7 +148,7 @@ std::string refuse_object(const TurnViews& views) {
   return {};
 }
 
-/// Whether the told pose lies within the uncertainty of the solved one.
+/// Whether the configured pose lies within the uncertainty of the solved one.
 bool agrees_with_told(const CalibrationReport& report) {
   const double near = std::max(agreeing_shift, agreeing_sigmas * report.position_sigma);
   return report.shift <= near && report.lift <= near &&
@@ -172,7 +172,7 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   if (report.after > max_after) {
     return "the stops disagree by " + mm_text(report.after, text_digits) + ": something moved";
   }
-  // If told and solved pose agree within sigma, a difference of their medians means nothing.
+  // If configured and solved pose agree within sigma, a difference of their medians means nothing.
   if (report.after > may_worsen * report.before && !agrees_with_told(report)) {
     return "the stops agree better with the configured pose";
   }

@@ -213,13 +213,13 @@ SolvedOptics to_optics(const OpticsState& state, const Intrinsics& sensor, const
 
 }  // namespace
 
-CalibrationFinding describe_focal_length(double seen, double told) {
-  const double error = std::abs(seen / told - 1);
+CalibrationFinding describe_focal_length(double seen, double configured) {
+  const double error = std::abs(seen / configured - 1);
   std::array<char, 128> text{};
   std::snprintf(
       text.data(), text.size(),
       "the sensor's focal length is %.1f %% %s than configured: %.0f pixels instead of %.0f",
-      100 * error, seen > told ? "longer" : "shorter", seen, told);
+      100 * error, seen > configured ? "longer" : "shorter", seen, configured);
   return {.code = "focal-length",
           .detail = text.data(),
           .hint =
@@ -227,9 +227,9 @@ CalibrationFinding describe_focal_length(double seen, double told) {
               "of their full size.",
           .stop = {},
           .angle = {},
-          .parameters = {{seen > told ? "longer_share" : "shorter_share", error},
+          .parameters = {{seen > configured ? "longer_share" : "shorter_share", error},
                          {"seen_px", seen},
-                         {"told_px", told}}};
+                         {"told_px", configured}}};
 }
 
 std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSamples& samples,

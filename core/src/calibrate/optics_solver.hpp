@@ -42,7 +42,7 @@ std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSampl
                                            const Eigen::Isometry3d& start, int threads);
 
 /// The finding "focal-length", of optics that are too far off to be a Kinect's.
-/// @param seen, told  pixels
-CalibrationFinding describe_focal_length(double seen, double told);
+/// @param seen, configured  pixels
+CalibrationFinding describe_focal_length(double seen, double configured);
 
 }  // namespace octurn

@@ -13,10 +13,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-// The told surface may be wrong by 30 mm and 5 degrees, which is 15 mm at the largest radius.
-constexpr double max_surface_height = 0.06;  // metres from the told surface
+// The configured surface may be wrong by 30 mm and 5 degrees, which is 15 mm at the largest radius.
+constexpr double max_surface_height = 0.06;  // metres from the configured surface
 constexpr double max_surface_radius = 0.17;  // metres from the axis
-constexpr double max_slope_deg = 6;          // of a plane, against the told surface
+constexpr double max_slope_deg = 6;          // of a plane, against the configured surface
 constexpr double inlier_height = 0.003;
 constexpr double object_height = 0.006;  // above the plane: more than the platform's noise
 constexpr int candidates = 400;
@@ -64,8 +64,8 @@ std::optional<Candidate> plane_through(const Vector3d& a, const Vector3d& b, con
   return Candidate{.normal = normal, .offset = normal.dot(a)};
 }
 
-/// Whether a reading may be the platform's: near the surface as told, and near its axis.
-/// @param point  metres, in the platform's frame as told
+/// Whether a reading may be the platform's: near the surface as configured, and near its axis.
+/// @param point  metres, in the platform's frame as configured
 bool may_be_platform(const Vector3d& point) {
   return std::abs(point.z()) < max_surface_height &&
          point.head<2>().squaredNorm() < max_surface_radius * max_surface_radius;
@@ -135,7 +135,7 @@ std::optional<Candidate> find_plane(const std::vector<Vector3d>& points,
     return std::nullopt;
   }
   const double enough = good_support * static_cast<double>(best->support);
-  // Along the told axis: the offset of a plane is no height where its normal differs.
+  // Along the configured axis: the offset of a plane is no height where its normal differs.
   const auto height = [&](const Candidate& plane) {
     return (plane.offset - plane.normal.dot(origin)) / plane.normal.dot(up);
   };

@@ -12,8 +12,8 @@ struct PlatformPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< upward, of length one
   double offset = 0;                                  ///< metres: normal . point = offset on it
   std::size_t inliers = 0;                            ///< readings that support it
-  double inlier_share = 0;                            ///< of the readings near the told surface
-  double rms = 0;                                     ///< metres, of their distances
+  double inlier_share = 0;  ///< of the readings near the configured surface
+  double rms = 0;           ///< metres, of their distances
 
   double height(const Eigen::Vector3d& point) const { return normal.dot(point) - offset; }
 };
@@ -25,12 +25,12 @@ struct PlatformSamples {
   std::vector<std::vector<float>> depths = {};  ///< of each stop, metres along z; 0: no reading
 };
 
-/// Fits the platform's plane: RANSAC among planes that are nearly level in the told pose, then
-/// least squares with Cauchy weights. If several planes have much support, the lowest is the
+/// Fits the platform's plane: RANSAC among planes that are nearly level in the configured pose,
+/// then least squares with Cauchy weights. If several planes have much support, the lowest is the
 /// platform: the lid of a flat box may be larger. Least squares use only the pixels of
 /// `find_plane_pixels`: the object's foot and the rim would tilt the plane.
 ///
-/// @param platform_from_sensor as told
+/// @param platform_from_sensor as configured
 /// @return nothing if no nearly level plane has any support
 std::optional<PlatformPlane> fit_platform_plane(const PlatformSamples& samples,
                                                 const Eigen::Isometry3d& platform_from_sensor);
@@ -44,7 +44,7 @@ PlatformPlane refine_platform_plane(const PlatformSamples& samples,
                                     const Eigen::Isometry3d& platform_from_sensor,
                                     const PlatformPlane& nearly);
 
-/// The pose of least rotation from the told one in which the plane is z = 0.
+/// The pose of least rotation from the configured one in which the plane is z = 0.
 Eigen::Isometry3d level(const Eigen::Isometry3d& platform_from_sensor, const PlatformPlane& plane);
 
 }  // namespace octurn

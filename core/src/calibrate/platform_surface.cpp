@@ -22,7 +22,8 @@ std::optional<PlatformSurface> measure_platform_surface(
   if (!plane || plane->inliers < min_inliers || plane->inlier_share < min_share) {
     return std::nullopt;
   }
-  // On the plane normal . p = offset; with p = (0, 0, height) of the told frame on the told axis.
+  // On the plane normal . p = offset; with p = (0, 0, height) of the configured frame on the
+  // configured axis.
   const Eigen::Vector3d normal = platform_from_sensor.linear() * plane->normal;
   const double offset = plane->offset + normal.dot(platform_from_sensor.translation());
   return PlatformSurface{.height = offset / normal.z(),

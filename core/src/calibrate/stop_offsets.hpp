@@ -9,9 +9,9 @@
 
 namespace octurn {
 
-/// The platform's angle at each stop, less the told one.
+/// The platform's angle at each stop, less the configured one.
 struct StopOffsets {
-  std::vector<double> offsets = {};  ///< radians, measured less told; 0 at the first stop
+  std::vector<double> offsets = {};  ///< radians, measured less configured; 0 at the first stop
   Eigen::MatrixXd covariance = {};   ///< of the offsets from the second stop on
 };
 

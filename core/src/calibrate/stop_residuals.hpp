@@ -49,7 +49,7 @@ inline constexpr std::size_t min_residuals = 60;
 
 /// Compares the readings of one stop with the surfaces that its partners saw.
 /// @param platform_from_sensor  that is tried, metres
-/// @param stop_offsets          radians, of each stop: true angle less the told one
+/// @param stop_offsets          radians, of each stop: true angle less the configured one
 /// @param visit                 called with each StopResidual
 template <typename Visit>
 void for_each_residual(const TurnViews& turn, const Eigen::Isometry3d& platform_from_sensor,

@@ -24,7 +24,7 @@ nlohmann::json to_json(const Box& box);
 
 nlohmann::json to_json(const SolvedPose& solved);
 
-/// The sensor's pose: as told, and as solved if it was.
+/// The sensor's pose: as configured, and as solved if it was.
 struct RigPose {
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   std::optional<SolvedPose> solved = {};

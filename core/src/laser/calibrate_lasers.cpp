@@ -50,9 +50,9 @@ constexpr double max_shift = 0.04;  // metres
 constexpr double max_turn_deg = 6;
 constexpr double lever = 0.05;  // metres above the platform, where `position_sigma` holds
 
-// The told rig is kept if a solution changes the fit by no more than this share. Two lasers of a
-// correct rig disagree by 0.1 mm; a plane that is off by `least_turn_deg`, 0.03 mm at the object,
-// adds a twentieth to that, as much as noise does from turn to turn.
+// The configured rig is kept if a solution changes the fit by no more than this share. Two lasers
+// of a correct rig disagree by 0.1 mm; a plane that is off by `least_turn_deg`, 0.03 mm at the
+// object, adds a twentieth to that, as much as noise does from turn to turn.
 constexpr double negligible_share = 0.05;
 
 // Smallest change of a plane that is worth a new model.
@@ -75,13 +75,13 @@ double disagreement(const RigSolution& solution) {
                                                         : median(solution.platform_heights);
 }
 
-/// Whether a solution fits no better than the told rig: its disagreement is the same within
+/// Whether a solution fits no better than the configured rig: its disagreement is the same within
 /// `negligible_share`, and the platform's lines are not flatter by more.
-bool fits_no_better(const RigSolution& solution, const RigSolution& told) {
-  const double before = disagreement(told);
+bool fits_no_better(const RigSolution& solution, const RigSolution& configured) {
+  const double before = disagreement(configured);
   return std::abs(disagreement(solution) - before) <= negligible_share * before &&
          median(solution.platform_heights) >=
-             (1 - negligible_share) * median(told.platform_heights);
+             (1 - negligible_share) * median(configured.platform_heights);
 }
 
 RigSolution solve_best(const RigSolver& solver) {
@@ -103,9 +103,9 @@ double angle_between(const Vector3d& a, const Vector3d& b) {
   return std::atan2(a.cross(b).norm(), a.dot(b));
 }
 
-/// Sets the shift, lift and tilt of the axis from the told pose to the solved one.
-void compare_poses(const Eigen::Isometry3d& told, CalibrationReport& report) {
-  const Eigen::Isometry3d change = report.platform_from_sensor * told.inverse();
+/// Sets the shift, lift and tilt of the axis from the configured pose to the solved one.
+void compare_poses(const Eigen::Isometry3d& configured, CalibrationReport& report) {
+  const Eigen::Isometry3d change = report.platform_from_sensor * configured.inverse();
   const Vector3d origin = change.inverse() * Vector3d::Zero();
   report.shift = origin.head<2>().norm();
   report.lift = origin.z();
@@ -119,11 +119,11 @@ void set_sigmas(const RigSolution& solution, CalibrationReport& report) {
                                              spread(3, 3) + lever * lever * spread(0, 0)));
 }
 
-bool moved_a_plane(const std::vector<Laser>& told, const std::vector<Laser>& solved) {
-  for (std::size_t i = 0; i < told.size(); ++i) {
-    const double turn = angle_between(told[i].normal, solved[i].normal);
+bool moved_a_plane(const std::vector<Laser>& configured, const std::vector<Laser>& solved) {
+  for (std::size_t i = 0; i < configured.size(); ++i) {
+    const double turn = angle_between(configured[i].normal, solved[i].normal);
     // The plane's distance from the camera: it changes by as much as the plane moves at the object.
-    const double shift = std::abs(told[i].distance - solved[i].distance);
+    const double shift = std::abs(configured[i].distance - solved[i].distance);
     if (turn > radians_from_degrees(least_turn_deg) || shift > least_shift) {
       return true;
     }
@@ -144,7 +144,7 @@ struct Limits {
 
 /// Returns why a solution is refused; empty if it is accepted.
 std::string refusal(const RigSolution& solution, const CalibrationReport& report,
-                    const std::vector<Laser>& told, const Limits& limits) {
+                    const std::vector<Laser>& configured, const Limits& limits) {
   if (median(solution.platform_heights) > limits.height) {
     return "the lines on the platform are " + mm_text(median(solution.platform_heights), 2) +
            " from flat";
@@ -158,7 +158,7 @@ std::string refusal(const RigSolution& solution, const CalibrationReport& report
     return "the configured pose and planes fit better than the solved ones";
   }
   const bool far_turned = std::ranges::any_of(solution.rig.lasers, [&](const Laser& laser) {
-    const auto was = std::ranges::find(told, laser.name, &Laser::name);
+    const auto was = std::ranges::find(configured, laser.name, &Laser::name);
     return angle_between(was->normal, laser.normal) > radians_from_degrees(max_turn_deg);
   });
   if (report.shift > max_shift || report.tilt > radians_from_degrees(max_turn_deg) || far_turned) {
@@ -188,13 +188,13 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
     throw Error(ErrorCode::scan_malformed, "lasers are calibrated from one turn by laser line");
   }
   throw_if_stopped(stop);
-  const LaserRig told{.platform_from_sensor = scan.platform_from_sensor,
-                      .lasers = scan.laser->lasers};
+  const LaserRig configured{.platform_from_sensor = scan.platform_from_sensor,
+                            .lasers = scan.laser->lasers};
   const LaserLines lines(folder, thinned(scan));
-  const RigSolver solver(lines, told, threads, stop);
-  LaserCalibration calibration{.lasers = told.lasers};
+  const RigSolver solver(lines, configured, threads, stop);
+  LaserCalibration calibration{.lasers = configured.lasers};
   CalibrationReport& report = calibration.report;
-  report.platform_from_sensor = told.platform_from_sensor;
+  report.platform_from_sensor = configured.platform_from_sensor;
   if (solver.platform_points() < min_platform_points) {
     report.reason = "the lasers' lines are not seen on the platform";
     return calibration;
@@ -204,19 +204,19 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   RigSolution best = solve_best(solver);
   report.after = disagreement(best);
   if (fits_no_better(best, as_told)) {
-    best.rig = told;
+    best.rig = configured;
     report.after = report.before;
   }
   report.platform_from_sensor = best.rig.platform_from_sensor;
-  compare_poses(told.platform_from_sensor, report);
+  compare_poses(configured.platform_from_sensor, report);
   set_sigmas(best, report);
-  report.reason = refusal(best, report, told.lasers, Limits(lines.pixel()));
+  report.reason = refusal(best, report, configured.lasers, Limits(lines.pixel()));
   report.accepted = report.reason.empty();
   calibration.lasers = best.rig.lasers;
   for (Laser& laser : calibration.lasers) {
     laser.source.reset();
   }
-  calibration.moved_a_plane = report.accepted && moved_a_plane(told.lasers, best.rig.lasers);
+  calibration.moved_a_plane = report.accepted && moved_a_plane(configured.lasers, best.rig.lasers);
   return calibration;
 }
 

@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using Eigen::VectorXd;
 
 constexpr double platform_radius = 0.14;  // metres, within which lines on the platform are searched
-constexpr double platform_search = 0.025;  // metres above and below the told platform
+constexpr double platform_search = 0.025;  // metres above and below the configured platform
 constexpr double height_step = 0.0005;     // metres, of the histogram of heights
 constexpr double object_margin = 0.003;    // metres around the object
 constexpr double platform_reach = 0.003;   // metres from the most frequent height
@@ -94,9 +94,9 @@ struct RigSolver::Sums {
   std::vector<float> residuals = {};
 };
 
-RigSolver::RigSolver(const LaserLines& lines, LaserRig told, int threads,
+RigSolver::RigSolver(const LaserLines& lines, LaserRig configured, int threads,
                      const std::stop_token& stop)
-    : lines_(lines), stop_(stop), told_(std::move(told)) {
+    : lines_(lines), stop_(stop), told_(std::move(configured)) {
   const auto stops = static_cast<int>(lines.scan().shots.size());
   fork_join(threads, [&](int thread) {
     for (int at = thread; at < stops; at += threads) {
@@ -107,8 +107,8 @@ RigSolver::RigSolver(const LaserLines& lines, LaserRig told, int threads,
   find_platform();
 }
 
-/// Reads all points near the platform, with the told rig. Sets the pivots, about which rotation and
-/// shift of a plane are nearly independent.
+/// Reads all points near the platform, with the configured rig. Sets the pivots, about which
+/// rotation and shift of a plane are nearly independent.
 std::vector<RigSolver::Reading> RigSolver::read_all() {
   std::vector<Reading> readings;
   pivots_.clear();

@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// The prior on a rig's deviation from the told one: one sigma of each kind of unknown.
+/// The prior on a rig's deviation from the configured one: one sigma of each kind of unknown.
 struct RigTrust {
   double pose_shift = 0;   ///< metres
   double pose_turn = 0;    ///< radians
@@ -32,17 +32,18 @@ struct RigSolution {
 ///
 /// Gauss-Newton with Cauchy weights and three kinds of residuals. A point of one laser's line,
 /// rotated back by its stop's angle, must lie on the surface that the other lasers measured (point
-/// to plane). Lines on the platform must lie at height 0. The told rig is a prior with the sigmas
-/// of `RigTrust`.
+/// to plane). Lines on the platform must lie at height 0. The configured rig is a prior with the
+/// sigmas of `RigTrust`.
 class RigSolver {
  public:
   /// Reads all lines. @throws  as `LaserLines::at`
-  /// @param told  start of the iteration and mean of the prior
-  RigSolver(const LaserLines& lines, LaserRig told, int threads, const std::stop_token& stop = {});
+  /// @param configured  start of the iteration and mean of the prior
+  RigSolver(const LaserLines& lines, LaserRig configured, int threads,
+            const std::stop_token& stop = {});
 
   RigSolution solve(const RigTrust& trust) const;
 
-  /// Evaluates the told rig.
+  /// Evaluates the configured rig.
   RigSolution as_told() const;
 
   /// The number of points on the platform.
@@ -55,7 +56,7 @@ class RigSolver {
   };
   struct Reading {
     PlatformPoint point = {};
-    double height = 0;  // metres, platform frame as told
+    double height = 0;  // metres, platform frame as configured
     double radius = 0;  // metres from the platform's axis
   };
   struct Sums;

@@ -29,16 +29,16 @@ const ReconstructOptions& checked(const ReconstructOptions& options) {
 
 TileHeader make_header(const ReconstructOptions& options, const TilePlan& plan, std::size_t number,
                        std::size_t bricks) {
-  ReconstructOptions told{.method = options.method,
-                          .leaf_size = TileLattice(options).leaf_side(),
-                          .root_size = options.root_size,
-                          .clip = options.clip};
+  ReconstructOptions configured{.method = options.method,
+                                .leaf_size = TileLattice(options).leaf_side(),
+                                .root_size = options.root_size,
+                                .clip = options.clip};
   if (options.method == Method::solid) {
-    told.target_error = options.target_error;
+    configured.target_error = options.target_error;
   } else {
-    told.threshold = options.threshold;
+    configured.threshold = options.threshold;
   }
-  return {.options = told,
+  return {.options = configured,
           .plan = compute_checksum(plan),
           .tiles = plan.tiles.size(),
           .number = number,

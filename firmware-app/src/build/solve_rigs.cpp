@@ -16,11 +16,11 @@ constexpr std::size_t max_kept_bytes = 16'000'000;  // cached depth images of al
 /// solved optics, with which its pose belongs.
 void share_rig(std::vector<StoredTurn>& turns) {
   std::vector<SolvedPose> solved;
-  const Eigen::Isometry3d& told = turns.front().scan.platform_from_sensor;
+  const Eigen::Isometry3d& configured = turns.front().scan.platform_from_sensor;
   for (const StoredTurn& turn : turns) {
     const Scan& scan = turn.scan;
     if (turn.object_from_platform || !scan.solved || scan.solved->optics ||
-        scan.platform_from_sensor.matrix() != told.matrix()) {
+        scan.platform_from_sensor.matrix() != configured.matrix()) {
       return;
     }
     solved.push_back(*scan.solved);

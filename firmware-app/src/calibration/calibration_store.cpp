@@ -89,13 +89,13 @@ CalibrationStore::CalibrationStore(fs::path data, SensorKind kind)
     : data_(std::move(data)), kind_(kind), records_(last_good_records(data_, kind)) {}
 
 /// Returns the record of the settings' pose.
-PoseRecord CalibrationStore::to_record(const ScanSettings& told) const {
+PoseRecord CalibrationStore::to_record(const ScanSettings& configured) const {
   const Eigen::Isometry3d drawing =
       kind_ == SensorKind::depth ? nominal_platform_from_sensor() : nominal_platform_from_camera();
-  const bool is_drawing = told.platform_from_sensor.isApprox(drawing, 1e-12);
-  return {.platform_from_sensor = told.platform_from_sensor,
+  const bool is_drawing = configured.platform_from_sensor.isApprox(drawing, 1e-12);
+  return {.platform_from_sensor = configured.platform_from_sensor,
           .origin = is_drawing ? PoseOrigin::drawing : PoseOrigin::settings,
-          .scale = told.depth_scale};
+          .scale = configured.depth_scale};
 }
 
 std::vector<PoseRecord> CalibrationStore::records() const {
@@ -103,26 +103,26 @@ std::vector<PoseRecord> CalibrationStore::records() const {
   return records_;
 }
 
-std::vector<PoseRecord> CalibrationStore::records(const ScanSettings& told,
+std::vector<PoseRecord> CalibrationStore::records(const ScanSettings& configured,
                                                   std::string_view camera) const {
   std::vector<PoseRecord> all = records();
   std::erase_if(all, [&](const PoseRecord& record) { return !is_of(record, camera); });
   if (all.empty()) {
-    return {to_record(told)};
+    return {to_record(configured)};
   }
   if (PoseRecord& first = all.front(); is_told(first)) {
     const std::string at = std::move(first.at);
-    first = to_record(told);
+    first = to_record(configured);
     first.at = at;
   }
   return all;
 }
 
-ScanSettings CalibrationStore::in_force(ScanSettings told, std::string_view camera) const {
-  const PoseRecord now = records(told, camera).front();
-  told.platform_from_sensor = now.platform_from_sensor;
-  told.depth_scale = now.scale;
-  return told;
+ScanSettings CalibrationStore::in_force(ScanSettings configured, std::string_view camera) const {
+  const PoseRecord now = records(configured, camera).front();
+  configured.platform_from_sensor = now.platform_from_sensor;
+  configured.depth_scale = now.scale;
+  return configured;
 }
 
 void CalibrationStore::set(const PoseRecord& record) {
@@ -137,10 +137,11 @@ void CalibrationStore::add(const PoseRecord& record) {
   write(std::move(all));
 }
 
-void CalibrationStore::change(const PoseChange& change, const ScanSettings& told,
+void CalibrationStore::change(const PoseChange& change, const ScanSettings& configured,
                               std::string_view camera) {
   const std::lock_guard writing(writing_);  // from reading the record to writing its change
-  PoseRecord record = change.is_settings_pose ? to_record(told) : records(told, camera).front();
+  PoseRecord record =
+      change.is_settings_pose ? to_record(configured) : records(configured, camera).front();
   record.at = utc_text(std::chrono::system_clock::now(), rfc3339);
   if (change.platform_from_sensor || change.scale) {
     const double scale = change.scale.value_or(record.scale);

@@ -35,20 +35,22 @@ class CalibrationStore {
   explicit CalibrationStore(std::filesystem::path data, SensorKind kind = SensorKind::depth);
 
   /// Returns the record in force, then the earlier ones, newest first. Does not access the disk.
-  /// @param told    settings whose pose is in force if there is no record
+  /// @param configured    settings whose pose is in force if there is no record
   /// @param camera  serial number of the camera whose records are returned; empty: all cameras
-  std::vector<PoseRecord> records(const ScanSettings& told, std::string_view camera = {}) const;
+  std::vector<PoseRecord> records(const ScanSettings& configured,
+                                  std::string_view camera = {}) const;
 
-  /// Returns settings for a new scan: `told` with the pose and the depth scale in force. Does not
-  /// access the disk.
+  /// Returns settings for a new scan: `configured` with the pose and the depth scale in force. Does
+  /// not access the disk.
   /// @param camera  as above
-  ScanSettings in_force(ScanSettings told, std::string_view camera = {}) const;
+  ScanSettings in_force(ScanSettings configured, std::string_view camera = {}) const;
 
   /// Puts a pose into force. @throws Error "disk-full", "write-failed"
   void set(const PoseRecord& record);
 
-  /// Applies a user's change. @param told, camera  as above
-  void change(const PoseChange& change, const ScanSettings& told, std::string_view camera = {});
+  /// Applies a user's change. @param configured, camera  as above
+  void change(const PoseChange& change, const ScanSettings& configured,
+              std::string_view camera = {});
 
   /// Restores the pose before the one in force. @param camera  as above
   /// @throws Error "not-found"  if there is none; and as `set`
@@ -56,7 +58,7 @@ class CalibrationStore {
 
  private:
   std::vector<PoseRecord> records() const;
-  PoseRecord to_record(const ScanSettings& told) const;
+  PoseRecord to_record(const ScanSettings& configured) const;
   void add(const PoseRecord& record);
   void write(std::vector<PoseRecord> records);
 

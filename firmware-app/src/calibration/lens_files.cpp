@@ -117,15 +117,16 @@ CameraLens told_lens(const LaserSettings& settings) {
   return {.intrinsics = settings.lens, .k1 = settings.k1, .k2 = settings.k2};
 }
 
-CameraLens lens_in_force(const fs::path& data, std::string_view serial, const CameraLens& told) {
+CameraLens lens_in_force(const fs::path& data, std::string_view serial,
+                         const CameraLens& configured) {
   const std::optional<KeptLens> kept = find_lens(data, serial);
-  const bool fits = kept && kept->lens.intrinsics.width == told.intrinsics.width &&
-                    kept->lens.intrinsics.height == told.intrinsics.height;
+  const bool fits = kept && kept->lens.intrinsics.width == configured.intrinsics.width &&
+                    kept->lens.intrinsics.height == configured.intrinsics.height;
   if (!fits) {
-    return told;
+    return configured;
   }
   CameraLens lens = kept->lens;
-  lens.intrinsics.depth_unit = told.intrinsics.depth_unit;  // a camera's lens has none
+  lens.intrinsics.depth_unit = configured.intrinsics.depth_unit;  // a camera's lens has none
   return lens;
 }
 

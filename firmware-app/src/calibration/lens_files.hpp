@@ -49,9 +49,9 @@ void remove_lens(const std::filesystem::path& data, std::string_view serial);
 CameraLens told_lens(const LaserSettings& settings);
 
 /// Returns the lens to use for a camera: the stored one if it is for pictures of the settings'
-/// size, else `told`, the settings' one. @throws Error "scan-malformed"
+/// size, else `configured`, the settings' one. @throws Error "scan-malformed"
 CameraLens lens_in_force(const std::filesystem::path& data, std::string_view serial,
-                         const CameraLens& told);
+                         const CameraLens& configured);
 
 /// JSON of a lens, for the API, files and `--json`: width, height, fx, fy, cx, cy, k1, k2.
 nlohmann::json to_json(const CameraLens& lens);

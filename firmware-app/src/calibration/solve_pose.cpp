@@ -43,9 +43,9 @@ CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, 
                 "the scan is of several poses, and a pose is solved from one turn",
                 "Solve each turn before they are merged.");
   }
-  Scan told = scan;
-  told.solved.reset();
-  CalibrationTurn turn{.intrinsics = model_intrinsics(told, told.shots.front()),
+  Scan configured = scan;
+  configured.solved.reset();
+  CalibrationTurn turn{.intrinsics = model_intrinsics(configured, configured.shots.front()),
                        .platform_from_sensor = scan.platform_from_sensor,
                        .angles = {},
                        .has_sensor_map = scan.sensor_map != nullptr,

@@ -22,7 +22,7 @@ struct TimedPicture {
 
 /// How a camera is to look. Nothing of it changes while a scan runs.
 struct CameraSettings {
-  int width = 0;                               ///< pixels, of the lens that is told
+  int width = 0;                               ///< pixels, of the configured lens
   int height = 0;                              ///< pixels
   std::chrono::microseconds exposure{10'000};  ///< of each picture
   double gain = 1;                             ///< of the analogue signal

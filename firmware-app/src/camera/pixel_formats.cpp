@@ -104,7 +104,7 @@ bool set_format(libcamera::CameraConfiguration& configuration, const PixelFormat
 
 /// Whether the camera makes fewer pictures than a scan wants in a format, and more if compressed.
 bool is_too_slow(const PixelFormat& format, const Size& size, const libcamera::Camera& camera) {
-  constexpr double wanted_hz = 15;  // what a scan's length is told for
+  constexpr double wanted_hz = 15;  // for which a scan's length is stated
   const auto devices = video_devices(camera.id());
   const auto rate_hz = [&](const PixelFormat& of) {
     return fastest_rate_hz(devices, of.fourcc(), size.width, size.height);

@@ -54,7 +54,7 @@ TurnReport solve_turn(const fs::path& folder, Scan& scan, int threads,
                       const std::stop_token& stop) {
   ScanSolution solution = solve_scan(folder, scan, {}, threads, stop);
   TurnReport report{.calibration = std::move(solution.report),
-                    .told = scan.laser->lasers,
+                    .configured = scan.laser->lasers,
                     .lasers = solution.solved.lasers,
                     .replaces_told = solution.replaces_told};
   for (const Shot& shot : scan.shots) {

@@ -11,12 +11,12 @@
 namespace octurn {
 
 Scan scan_of_rig(const Rig& rig, const ScanSettings& settings) {
-  const LaserSettings* const told = rig.laser();
-  return told == nullptr ? Scan{}
-                         : Scan{.intrinsics = told->lens,
-                                .laser = laser_camera(*told),
-                                .platform_from_sensor = told->platform_from_sensor,
-                                .clip = settings.clip};
+  const LaserSettings* const configured = rig.laser();
+  return configured == nullptr ? Scan{}
+                               : Scan{.intrinsics = configured->lens,
+                                      .laser = laser_camera(*configured),
+                                      .platform_from_sensor = configured->platform_from_sensor,
+                                      .clip = settings.clip};
 }
 
 ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& settings,

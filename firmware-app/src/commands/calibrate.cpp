@@ -60,29 +60,31 @@ std::string to_text(const CalibrationReport& report) {
   return text.str();
 }
 
-/// The angle between each laser's told and solved plane, as lines for people.
-std::string to_text(const std::vector<Laser>& told, const std::vector<Laser>& solved) {
+/// The angle between each laser's configured and solved plane, as lines for people.
+std::string to_text(const std::vector<Laser>& configured, const std::vector<Laser>& solved) {
   std::ostringstream text;
   text.setf(std::ios::fixed);
   text.precision(3);
   for (std::size_t i = 0; i < solved.size(); ++i) {
-    const double turn = std::acos(std::clamp(told[i].normal.dot(solved[i].normal), -1.0, 1.0));
+    const double turn =
+        std::acos(std::clamp(configured[i].normal.dot(solved[i].normal), -1.0, 1.0));
     text << "The plane of laser " << solved[i].name << " is " << degrees_from_radians(turn)
          << " degrees from the configured one.\n";
   }
   return text.str();
 }
 
-/// @param told, solved  lasers before and after solving; empty for a depth sensor
+/// @param configured, solved  lasers before and after solving; empty for a depth sensor
 void write_calibration_report(const CalibrationReport& report, const std::vector<double>& angles,
-                              const std::vector<Laser>& told, const std::vector<Laser>& solved,
+                              const std::vector<Laser>& configured,
+                              const std::vector<Laser>& solved,
                               const CalibrateArguments& arguments) {
   if (arguments.json) {
     const nlohmann::json object =
         solved.empty() ? to_json(report, angles) : to_json(report, angles, solved);
     write_standard_output(object.dump() + "\n");
   } else {
-    write_standard_output(to_text(report) + (report.accepted ? to_text(told, solved) : ""));
+    write_standard_output(to_text(report) + (report.accepted ? to_text(configured, solved) : ""));
   }
 }
 
@@ -130,7 +132,7 @@ bool calibrate_rig(const CalibrateArguments& arguments) {
     throw Stopped{};
   }
   const TurnReport& report = *run.report;
-  write_calibration_report(report.calibration, report.angles, report.told, report.lasers,
+  write_calibration_report(report.calibration, report.angles, report.configured, report.lasers,
                            arguments);
   return report.calibration.accepted;
 }

@@ -19,7 +19,8 @@ struct RigArguments {
   bool laser = false;          ///< simulates a camera with line lasers, not a depth sensor
   std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
   bool other_lens = false;     ///< the simulated camera's lens differs from the settings
-  bool perfect = false;  ///< no fixed pattern error of the simulated sensor; its told pose is true
+  bool perfect =
+      false;  ///< no fixed pattern error of the simulated sensor; its configured pose is true
   std::optional<double> wall = {};        ///< metres from the simulated sensor to a wall it faces
   double speed = 1.0;                     ///< of the simulated rig, relative to real time
   std::optional<double> gear_ratio = {};  ///< of the simulated turntable; nothing: as configured

@@ -50,12 +50,12 @@ void take_told_poses(Scan& scan) {
   }
 }
 
-/// Solves the sensor's pose if the settings ask for it. A solved pose that only confirms the told
-/// one does not replace it, so that the model keeps its bytes.
+/// Solves the sensor's pose if the settings ask for it. A solved pose that only confirms the
+/// configured one does not replace it, so that the model keeps its bytes.
 PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelSettings& settings,
                     const std::stop_token& stop) {
   PosedScan posed{.scan = std::move(scan)};
-  if (settings.scan.pose == PoseSource::told) {
+  if (settings.scan.pose == PoseSource::configured) {
     take_told_poses(posed.scan);
   } else if (!posed.scan.solved && is_one_turn(posed.scan)) {
     ScanSolution solution =
@@ -96,9 +96,9 @@ ReconstructInput read_input(const ReconstructArguments& arguments, const std::st
     expect_no_input(arguments.output, arguments.folder);
     expect_writable(arguments.output);
   }
-  Scan told = read_scan_of(arguments);
-  ReconstructInput input{.settings = settings_from(arguments.settings, told)};
-  PosedScan posed = with_pose(std::move(told), arguments.folder, input.settings, stop);
+  Scan configured = read_scan_of(arguments);
+  ReconstructInput input{.settings = settings_from(arguments.settings, configured)};
+  PosedScan posed = with_pose(std::move(configured), arguments.folder, input.settings, stop);
   input.scan = std::move(posed.scan);
   input.findings = std::move(posed.findings);
   input.options = options_from(input.settings, input.scan);

@@ -45,19 +45,21 @@ CameraLens other_lens(CameraLens lens) {
   return lens;
 }
 
-/// The simulated rig's true geometry, from which the told one may differ.
-LaserSimulation to_simulation(const RigArguments& arguments, const LaserSettings& told) {
-  const CameraLens lens = arguments.other_lens ? other_lens(told_lens(told)) : told_lens(told);
+/// The simulated rig's true geometry, from which the configured one may differ.
+LaserSimulation to_simulation(const RigArguments& arguments, const LaserSettings& configured) {
+  const CameraLens lens =
+      arguments.other_lens ? other_lens(told_lens(configured)) : told_lens(configured);
   LaserSimulation simulation{.mesh_file = arguments.mesh_file,
                              .lens = lens.intrinsics,
                              .k1 = lens.k1,
                              .k2 = lens.k2,
-                             .platform_from_sensor = told.platform_from_sensor,
-                             .lasers = laser_camera(told).lasers};
+                             .platform_from_sensor = configured.platform_from_sensor,
+                             .lasers = laser_camera(configured).lasers};
   const Eigen::Vector3d up =
-      told.platform_from_sensor.linear().transpose() * Eigen::Vector3d::UnitZ();
+      configured.platform_from_sensor.linear().transpose() * Eigen::Vector3d::UnitZ();
   for (Laser& laser : simulation.lasers) {
-    const double turn_deg = laser.name == told.left.laser.name ? left_turn_deg : right_turn_deg;
+    const double turn_deg =
+        laser.name == configured.left.laser.name ? left_turn_deg : right_turn_deg;
     laser = turned_in_holder(laser, up, arguments.perfect ? 0 : radians_from_degrees(turn_deg));
   }
   return simulation;

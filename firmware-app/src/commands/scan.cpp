@@ -85,25 +85,25 @@ void hand_over_model(const std::filesystem::path& from, const std::filesystem::p
 }
 
 /// Checks that the scan is in the store.
-const std::string& known_id(const std::string& told, const ScanStore& store) {
-  if (!store.find(told)) {
+const std::string& known_id(const std::string& configured, const ScanStore& store) {
+  if (!store.find(configured)) {
     const std::string scans = (store.data() / "scans").string();
-    throw Error(ErrorCode::no_such_scan, told + ": is no scan in " + scans,
+    throw Error(ErrorCode::no_such_scan, configured + ": is no scan in " + scans,
                 "ls " + scans + " lists them.");
   }
-  return told;
+  return configured;
 }
 
 /// Converts the folder of a scan in the store to the scan's id; an id stays as it is.
-std::string to_id(const std::string& told, const ScanStore& store) {
-  if (store.find(told) || !std::filesystem::is_directory(told)) {
-    return known_id(told, store);
+std::string to_id(const std::string& configured, const ScanStore& store) {
+  if (store.find(configured) || !std::filesystem::is_directory(configured)) {
+    return known_id(configured, store);
   }
-  const auto folder = std::filesystem::canonical(told);
+  const auto folder = std::filesystem::canonical(configured);
   std::string id = folder.filename();
   if (!store.find(id) || std::filesystem::canonical(store.folder(id)) != folder) {
     throw Error(ErrorCode::no_such_scan,
-                told + ": is no scan in " + store.data().string() +
+                configured + ": is no scan in " + store.data().string() +
                     ", and the model of both poses is kept with a scan there",
                 "Scan the object as it lies now without --pose-of, and join the two folders with "
                 "octurn merge.");

@@ -163,7 +163,7 @@ void Run::add_stored() {
 /// Solves the sensor's pose from the snapshots. If it replaces the configured one, the
 /// reconstruction starts again.
 std::vector<CalibrationFinding> Run::calibrate() {
-  if (settings_.pose == PoseSource::told || scan_.solved) {
+  if (settings_.pose == PoseSource::configured || scan_.solved) {
     return {};
   }
   observer_.on_progress(Phase::calibrating, done());

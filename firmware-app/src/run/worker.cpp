@@ -116,7 +116,7 @@ PoseRecord to_record(const TurnReport& report, const ScanSettings& settings, Rig
     return record;
   }
   PoseRecord record = to_record(report.calibration, PoseOrigin::turn, rig.camera().serial(),
-                                report.replaces_told ? report.lasers : report.told);
+                                report.replaces_told ? report.lasers : report.configured);
   if (!report.replaces_told) {
     record.platform_from_sensor = rig.laser()->platform_from_sensor;
   }

@@ -134,7 +134,7 @@ std::vector<Field> model_fields(ScanSettings& s, const SettingRanges& ranges) {
       {.key = "calibrate",
        .help =
            "pose of the sensor: auto solves it from the snapshots, told takes the configured one",
-       .access = choice(s.pose, {PoseSource::solved, PoseSource::told})},
+       .access = choice(s.pose, {PoseSource::solved, PoseSource::configured})},
       {.key = "root_size_mm",
        .unit = "mm",
        .help = "side of the root cube",

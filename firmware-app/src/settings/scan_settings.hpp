@@ -22,8 +22,8 @@ std::size_t half_of_memory();
 
 /// Source of the sensor's pose that a model is made with.
 enum class PoseSource {
-  solved,  ///< the scan's solved pose, else one solved from its snapshots if that is accepted
-  told,    ///< the configured pose
+  solved,      ///< the scan's solved pose, else one solved from its snapshots if that is accepted
+  configured,  ///< the configured pose
 };
 
 /// The source's name in settings: "auto", "told".

@@ -21,7 +21,7 @@ Scan scan_to_build(const std::filesystem::path& folder, const BuildSettings& set
   if (settings.platform_from_sensor) {
     scan.platform_from_sensor = *settings.platform_from_sensor;
   }
-  if (settings.platform_from_sensor || settings.scan.pose == PoseSource::told) {
+  if (settings.platform_from_sensor || settings.scan.pose == PoseSource::configured) {
     scan.solved.reset();
   }
   return scan;

@@ -39,9 +39,9 @@ struct SeenStop {
 /// The devices to scan with.
 struct RigOptions {
   std::string sensor_uri = {};                  ///< device URI of OpenNI2
+  double speed = 1.0;                           ///< of a simulated rig, relative to real time
   std::optional<StepperSettings> stepper = {};  ///< of the real turntable; nullopt: it is simulated
   Motion motion = {};                           ///< of a simulated turntable
-  double speed = 1.0;                           ///< of a simulated rig, relative to real time
   /// What a simulated turntable turns; nothing: it has no weight, and follows each pulse at once.
   std::optional<PlatformLoad> load = {};
   double platform_angle_deg = 0;  ///< initial angle

@@ -80,8 +80,8 @@ RigOptions laser_rig_options(const RigArguments& arguments, const Config& config
     return {.stepper = config.turntable, .laser = config.laser};
   }
   return {
-      .motion = to_simulated_motion(config.turntable),
       .speed = arguments.speed,
+      .motion = to_simulated_motion(config.turntable),
       .laser = config.laser,
       .open_camera = [simulation = to_simulation(arguments, config.laser), speed = arguments.speed](
                          const LaserSettings&) { return simulate_laser_rig(simulation, speed); }};
@@ -105,8 +105,8 @@ RigOptions rig_options(const RigArguments& arguments, const Config& config) {
   // A recording shows what was seen at an angle, and not at one that a heavy platform swings to.
   const bool has_weight = !arguments.perfect && arguments.sensor_uri.empty();
   return {.sensor_uri = arguments.sensor_uri.empty() ? simulated : arguments.sensor_uri,
-          .motion = to_simulated_motion(config.turntable),
           .speed = arguments.speed,
+          .motion = to_simulated_motion(config.turntable),
           .load = has_weight ? std::optional(arguments.load) : std::nullopt,
           .open_sensor = sensor_opener(to_mechanism(arguments, config.turntable))};
 }

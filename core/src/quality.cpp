@@ -146,9 +146,12 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
   }
 }
 
-/// Reports filled-in surface that is far from everything that any stop saw: nothing measured says
-/// where it should be.
+/// Reports filled-in surface of a scan by laser line that is far from everything that was seen:
+/// nothing measured says where it should be. A depth sensor's rays carve what it does not see.
 void judge_fill(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
+  if (!scan.by_laser) {
+    return;
+  }
   std::vector<Eigen::Vector3d> far_places;
   double farthest = max_fill;
   for (const Eigen::Vector3d& place : model.places.unseen) {

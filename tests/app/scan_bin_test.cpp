@@ -201,9 +201,11 @@ TEST_F(ScanBinTest, NamesTheScansWhoseSpaceSuffices) {
   // The time of deletion is in whole seconds: renamed, so that the order is that of the ids.
   for (const std::string& id : ids) {
     store.discard(id);
-    fs::rename(*std::ranges::find_if(
-                   fs::directory_iterator(bin()), fs::directory_iterator(),
-                   [&](const auto& entry) { return entry.path().string().ends_with(id); }),
+    fs::rename(*std::ranges::find_if(fs::directory_iterator(bin()), fs::directory_iterator(),
+                                     [&](const auto& entry) {
+                                       return entry.path().string().find("." + id) !=
+                                              std::string::npos;
+                                     }),
                bin() / (id + "." + id));
   }
   const ScanBin binned(bin(), [](const fs::path&) { return Job(); });

@@ -106,6 +106,7 @@ TEST(Judge, LooksForASideThatNobodySaw) {
 
 TEST(Judge, TellsOfFillFarFromEverythingThatWasSeen) {
   ScanFigures scan = right_scan();
+  scan.by_laser = true;
   scan.seen = {{0, 0, 0.02}, {0.03, 0, 0.02}};
   ModelReport model = right_model();
   model.places.unseen = {{0.055, 0, 0.02}, {-0.02, 0, 0.02}};  // 25 and 20 mm away

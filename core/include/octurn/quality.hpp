@@ -52,6 +52,7 @@ struct Quality {
 /// Measurements on the depth images of a scan, with the poses and the clip box of its model.
 struct ScanFigures {
   std::size_t stops = 0;
+  bool by_laser = false;
   double object_pixels = 0;  ///< mean number of readings inside the box at a stop
   double distance = 0;       ///< metres: mean distance of these readings from the sensor
   double widest_gap = 0;     ///< radians: largest angle between neighbouring stops

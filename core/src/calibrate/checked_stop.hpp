@@ -35,6 +35,7 @@ struct ScanCheck::Stop {
   Blocks blocks;
   ObjectView view;                            ///< of every other row and column
   std::vector<SurfaceReading> readings = {};  ///< of the object, inside the box
+  bool by_laser = false;
   std::size_t object_pixels = 0;              ///< inside the box
   double depths = 0;                          ///< metres, their sum over object pixels
   /// Metres, object's frame: pixels at which the box cuts, as in `ScanFigures::cut_pixels`.

@@ -24,7 +24,6 @@ const actions = {
   'empty': again,
   'moved': again,
   'little-seen': again,
-  'filled-far': again,
   'parts-dropped': again,
   'part-missing': calibrate,
   'coarser': space,

@@ -29,8 +29,8 @@ std::string_view to_string(Verdict verdict);
 
 /// Why a model is not good.
 struct QualityReason {
-  /// "empty", "stops-disagree", "moved", "floats", "sunk", "little-seen", "filled-far",
-  /// "cut-by-box", "parts-dropped", "part-missing"
+  /// "empty", "stops-disagree", "moved", "floats", "sunk", "little-seen", "cut-by-box",
+  /// "parts-dropped", "part-missing"
   std::string code = {};
   std::string detail = {};     ///< what was found and its size, for people
   std::string hint = {};       ///< what to do about it
@@ -52,7 +52,6 @@ struct Quality {
 /// Measurements on the depth images of a scan, with the poses and the clip box of its model.
 struct ScanFigures {
   std::size_t stops = 0;
-  bool by_laser = false;
   double object_pixels = 0;  ///< mean number of readings inside the box at a stop
   double distance = 0;       ///< metres: mean distance of these readings from the sensor
   double widest_gap = 0;     ///< radians: largest angle between neighbouring stops

@@ -126,9 +126,6 @@ struct LineStrip {
                                ///< neighbours'
   std::vector<Triangle> to_previous = {};
   std::vector<Triangle> to_next = {};  ///< the same surface as `to_previous` of the next stop
-  /// Triangles to both neighbours with a corner on a faint piece of line: they are no surface, but
-  /// the rays that end on them show free space.
-  std::vector<Triangle> faint = {};
   std::optional<Eigen::Vector3d> source = {};  ///< metres, object's frame: the laser, if known
 };
 

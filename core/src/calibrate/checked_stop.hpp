@@ -35,9 +35,8 @@ struct ScanCheck::Stop {
   Blocks blocks;
   ObjectView view;                            ///< of every other row and column
   std::vector<SurfaceReading> readings = {};  ///< of the object, inside the box
-  bool by_laser = false;
-  std::size_t object_pixels = 0;  ///< inside the box
-  double depths = 0;              ///< metres, their sum over object pixels
+  std::size_t object_pixels = 0;              ///< inside the box
+  double depths = 0;                          ///< metres, their sum over object pixels
   /// Metres, object's frame: pixels at which the box cuts, as in `ScanFigures::cut_pixels`.
   std::array<std::vector<Eigen::Vector3f>, 5> cut = {};
   std::vector<ObjectCell> seen = {};  ///< cells with readings of a surface inside the box

@@ -82,7 +82,6 @@ ScanCheck::~ScanCheck() = default;
 
 void ScanCheck::add(std::size_t stop, const Snapshot& snapshot) {
   stops_[stop] = std::make_unique<Stop>(snapshot, clip_);
-  stops_[stop]->by_laser = !snapshot.strips.empty();
 }
 
 ScanFigures ScanCheck::figures(int threads) const {
@@ -100,7 +99,6 @@ ScanFigures ScanCheck::figures(int threads) const {
   double depths = 0;
   std::array<Places, 5> cut;
   for (const Stop* stop : stops) {
-    figures.by_laser = figures.by_laser || stop->by_laser;
     figures.object_pixels += static_cast<double>(stop->object_pixels) / count;
     depths += stop->depths / count;
     for (std::size_t side = 0; side < figures.cut_pixels.size(); ++side) {

@@ -38,15 +38,9 @@ constexpr double max_cost_ratio_in_part = 0.85;  // the same for `trusted_in_par
 
 constexpr std::size_t min_platform_points = 500;
 constexpr std::size_t min_pairs = 500;
-
-// Largest medians of the lines' heights on the platform and of the distances between two lasers,
-// metres. They are these shares of a pixel of the default camera; a coarser one is allowed as many
-// pixels.
-constexpr double max_height = 0.0003;
-constexpr double max_disagreement = 0.0004;
-constexpr double max_height_pixels = 0.75;
-constexpr double max_disagreement_pixels = 1;
-constexpr double max_shift = 0.04;  // metres
+constexpr double max_height = 0.0003;        // metres, median height of lines on the platform
+constexpr double max_disagreement = 0.0004;  // metres, median between two lasers
+constexpr double max_shift = 0.04;           // metres
 constexpr double max_turn_deg = 6;
 constexpr double lever = 0.05;  // metres above the platform, where `position_sigma` holds
 
@@ -131,26 +125,14 @@ bool moved_a_plane(const std::vector<Laser>& configured, const std::vector<Laser
   return false;
 }
 
-/// What a solution may leave, metres.
-struct Limits {
-  double height = 0;
-  double disagreement = 0;
-
-  /// @param pixel  width of a pixel at the object, metres
-  explicit Limits(double pixel)
-      : height(std::max(max_height, max_height_pixels * pixel)),
-        disagreement(std::max(max_disagreement, max_disagreement_pixels * pixel)) {}
-};
-
 /// Returns why a solution is refused; empty if it is accepted.
 std::string refusal(const RigSolution& solution, const CalibrationReport& report,
-                    const std::vector<Laser>& configured, const Limits& limits) {
-  if (median(solution.platform_heights) > limits.height) {
+                    const std::vector<Laser>& configured) {
+  if (median(solution.platform_heights) > max_height) {
     return "the lines on the platform are " + mm_text(median(solution.platform_heights), 2) +
            " from flat";
   }
-  if (solution.surface_distances.size() >= min_pairs &&
-      disagreement(solution) > limits.disagreement) {
+  if (solution.surface_distances.size() >= min_pairs && disagreement(solution) > max_disagreement) {
     return "two lasers disagree about the object by " + mm_text(disagreement(solution), 2) +
            ": the object or a laser moved";
   }
@@ -210,7 +192,7 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   report.platform_from_sensor = best.rig.platform_from_sensor;
   compare_poses(configured.platform_from_sensor, report);
   set_sigmas(best, report);
-  report.reason = refusal(best, report, configured.lasers, Limits(lines.pixel()));
+  report.reason = refusal(best, report, configured.lasers);
   report.accepted = report.reason.empty();
   calibration.lasers = best.rig.lasers;
   for (Laser& laser : calibration.lasers) {

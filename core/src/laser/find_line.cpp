@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
+#include <iterator>
 #include <span>
-#include <utility>
 
 #include "laser/line_pieces.hpp"
 
@@ -29,14 +28,6 @@ constexpr int light_share = 20;       // of a peak: a line's light ends at a twe
 // it.
 constexpr double skirt = 0.6;
 
-// A wide line with a halo is light that scatters below the surface, farther to one side than to the
-// other: only the middle of such a line is where the laser meets the surface. The light below a
-// share of the peak is left out: none of lines that are `narrow` pixels wide at half maximum, half
-// of the peak from `broad` pixels on.
-constexpr double narrow = 5;
-constexpr double broad = 10;
-constexpr double max_level = 0.5;
-
 constexpr int max_half_width = 40;  // pixels: no line is wider
 constexpr float min_light = 25;     // grey levels, summed over the line's width
 
@@ -45,16 +36,13 @@ constexpr int saturated = 250;  // grey levels
 constexpr int min_saturated_pixels = 6;
 constexpr int max_saturated_share = 2;  // half of the line's pixels
 
-// Largest standard deviation across a line: `wide` times the picture's median, plus `wide_pixels`.
+// Largest standard deviation across a line: `wide` times the median of all, plus `wide_pixels`.
 constexpr double wide = 2.5;
 constexpr double wide_pixels = 0.5;
 
-constexpr int faint_share = 10;  // of the picture's median peak: a tenth
-
-/// A candidate, and the shape of its light.
+/// A candidate, and the width of its light.
 struct Candidate {
   LineSample sample;
-  int peak = 0;         // smoothed grey levels, times the gain
   float deviation = 0;  // pixels, standard deviation
 };
 
@@ -129,7 +117,6 @@ struct Extent {
 struct Baseline {
   int first = 0;
   int last = 0;
-  double level = 0;  ///< above it light counts; a share of the peak
 };
 
 /// Takes the halo off a peak's light: narrows it to the line, and returns the halo's baseline.
@@ -142,8 +129,7 @@ Baseline take_off_halo(const Row& row, int peak, Extent& light) {
   while (bright.last < light.last && row.at(bright.last + 1) >= half) {
     ++bright.last;
   }
-  const int width = bright.last - bright.first + 1;
-  const int more = 1 + static_cast<int>(std::lround(skirt * width));
+  const int more = 1 + static_cast<int>(std::lround(skirt * (bright.last - bright.first + 1)));
   Baseline halo;
   if (bright.first - more > light.first) {
     light.first = bright.first - more;
@@ -153,9 +139,6 @@ Baseline take_off_halo(const Row& row, int peak, Extent& light) {
     light.last = bright.last + more;
     halo.last = row.at(light.last);
   }
-  if (halo.first > 0 || halo.last > 0) {
-    halo.level = max_level * std::clamp((width - narrow) / (broad - narrow), 0.0, 1.0);
-  }
   return halo;
 }
 
@@ -164,14 +147,12 @@ Candidate make_candidate(const Row& row, int peak, Extent line) {
   const Baseline halo = take_off_halo(row, peak, line);
   const double base = static_cast<double>(halo.first) / gain;
   const double slope = (static_cast<double>(halo.last) / gain - base) / (line.last - line.first);
-  const double top = static_cast<double>(row.at(peak)) / gain;
-  const double level = halo.level * (top - (base + slope * (peak - line.first)));
   double light = 0;
   double moment = 0;
   double second = 0;
   for (int u = line.first; u <= line.last; ++u) {
     const double at = u - line.first;
-    const double value = std::max(row.difference(u) - (base + slope * at) - level, 0.0);
+    const double value = std::max(row.difference(u) - (base + slope * at), 0.0);
     light += value;
     moment += value * at;
     second += value * at * at;
@@ -182,7 +163,6 @@ Candidate make_candidate(const Row& row, int peak, Extent line) {
   const double mean = moment / light;
   return {
       .sample = {.u = static_cast<float>(line.first + mean), .light = static_cast<float>(light)},
-      .peak = row.at(peak),
       .deviation = static_cast<float>(std::sqrt(std::max(second / light - mean * mean, 0.0)))};
 }
 
@@ -213,41 +193,21 @@ void find_candidates(const Row& row, int v, std::vector<Candidate>& candidates) 
   }
 }
 
-/// The median of a property of candidates, weighted by their peaks: a picture has more candidates
-/// of glow and reflections than of the line, but they are dimmer.
-/// @param candidates  at least one
-template <typename Property>
-Property median_by_brightness(const std::vector<Candidate>& candidates,
-                              Property Candidate::*property) {
-  std::vector<std::pair<Property, int>> weighted;
-  std::int64_t total = 0;
-  for (const Candidate& candidate : candidates) {
-    weighted.emplace_back(candidate.*property, candidate.peak);
-    total += candidate.peak;
-  }
-  std::ranges::sort(weighted);
-  std::int64_t below = 0;
-  return std::ranges::find_if(weighted,
-                              [&](const auto& entry) {
-                                below += entry.second;
-                                return 2 * below >= total;
-                              })
-      ->first;
-}
-
-/// Drops candidates that are far wider than the picture's line: subsurface scattering, or light
-/// from two surfaces. Marks those that are far dimmer.
-std::vector<LineSample> select_samples(const std::vector<Candidate>& candidates) {
+/// Drops candidates that are far wider than the median: subsurface scattering, or light from two
+/// surfaces.
+std::vector<LineSample> without_wide(const std::vector<Candidate>& candidates) {
+  std::vector<float> widths;
+  std::ranges::transform(candidates, std::back_inserter(widths), &Candidate::deviation);
   std::vector<LineSample> samples;
-  if (candidates.empty()) {
+  if (widths.empty()) {
     return samples;
   }
-  const double width = static_cast<double>(median_by_brightness(candidates, &Candidate::deviation));
-  const int peak = median_by_brightness(candidates, &Candidate::peak);
+  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
+  std::ranges::nth_element(widths, middle);
+  const auto limit = static_cast<float>(wide * static_cast<double>(*middle) + wide_pixels);
   for (const Candidate& candidate : candidates) {
-    if (static_cast<double>(candidate.deviation) <= wide * width + wide_pixels) {
+    if (candidate.deviation <= limit) {
       samples.push_back(candidate.sample);
-      samples.back().is_faint = candidate.peak * faint_share < peak;
     }
   }
   return samples;
@@ -281,7 +241,7 @@ std::vector<LineSample> find_line(const Picture& dark, const Picture& lit, const
       find_candidates(row, v, candidates);
     }
   }
-  return smoothed_pieces(select_samples(candidates), scale);
+  return smoothed_pieces(without_wide(candidates), scale);
 }
 
 }  // namespace octurn

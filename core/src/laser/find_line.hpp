@@ -13,9 +13,6 @@ struct LineSample {
   float light = 0;         ///< grey levels, the sum over the line's width
   int row = 0;             ///< of the picture
   std::int32_t next = -1;  ///< index of the sample that continues the line in the next row, or -1
-  /// Of a piece that is far dimmer than the picture's line and too short to be trusted: light that
-  /// the object throws on other surfaces looks like this.
-  bool is_faint = false;
 };
 
 /// Windows of the line detection in pixels, which follow from the rig's resolution.

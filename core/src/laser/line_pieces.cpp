@@ -11,11 +11,6 @@ namespace {
 
 constexpr std::size_t min_rows = 6;  // of a piece
 
-// A piece of which as many rows are not faint is trusted as a whole, and so is a longer one: a line
-// on a dark material. What an object throws on a pattern beside it breaks at the pattern's edges.
-constexpr std::size_t min_bright_rows = 3;
-constexpr std::size_t min_faint_rows = 18;
-
 /// Index of the sample in [first, end) whose column is nearest to `u`; -1 if all are farther than
 /// `max_jump`.
 std::int32_t nearest_sample(const std::vector<LineSample>& samples, std::size_t first,
@@ -95,18 +90,12 @@ void smooth_piece(std::vector<LineSample>& samples, const std::vector<std::size_
   if (chain.size() < min_rows + 2 * edge) {
     return;
   }
-  const auto bright =
-      std::ranges::count_if(chain, [&](std::size_t i) { return !samples[i].is_faint; });
-  const bool is_faint =
-      static_cast<std::size_t>(bright) < min_bright_rows && chain.size() < min_faint_rows;
   std::vector<LineSample> piece;
   for (std::size_t i = edge; i + edge < chain.size(); ++i) {
     piece.push_back(samples[chain[i]]);
   }
   for (std::size_t i = 0; i < piece.size(); ++i) {
-    LineSample& sample = samples[chain[i + edge]];
-    sample.u = fitted(piece, i, static_cast<std::size_t>(scale.fit_rows));
-    sample.is_faint = is_faint;
+    samples[chain[i + edge]].u = fitted(piece, i, static_cast<std::size_t>(scale.fit_rows));
     kept[chain[i + edge]] = 1;
   }
 }

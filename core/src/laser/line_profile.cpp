@@ -29,8 +29,7 @@ LineProfile to_profile(std::span<const LineSample> samples, const Intrinsics& le
     const double factor = distortion.undistorting_factor(std::sqrt(x * x + y * y));
     profile.rays.push_back({.x = static_cast<float>(x * factor),
                             .y = static_cast<float>(y * factor),
-                            .next = sample.next,
-                            .is_faint = sample.is_faint});
+                            .next = sample.next});
   }
   profile.rows.resize(static_cast<std::size_t>(lens.height) + 1,
                       static_cast<std::int32_t>(profile.rays.size()));

@@ -16,7 +16,6 @@ struct LineProfile {
     float x = 0;  ///< the ray is (x, y, 1), optical frame
     float y = 0;
     std::int32_t next = -1;  ///< index of the ray that continues the line in the next row, or -1
-    bool is_faint = false;   ///< as `LineSample::is_faint`: it shows free space, and no surface
   };
 
   std::vector<Ray> rays = {};  ///< sorted by row, then column

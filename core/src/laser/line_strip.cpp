@@ -41,13 +41,12 @@ class LineJoiner {
 
   const std::vector<Vector3d>& other_points() const { return other_points_; }
 
-  /// @param[out] faint  receives the triangles with a corner on a faint piece
-  std::vector<LineStrip::Triangle> triangles(std::vector<LineStrip::Triangle>& faint) const {
+  std::vector<LineStrip::Triangle> triangles() const {
     std::vector<LineStrip::Triangle> triangles;
     for (std::size_t v = 0; v + 1 < own_.rows.size(); ++v) {
       for (auto i = own_.rows[v]; i < own_.rows[v + 1]; ++i) {
         if (own_.rays[static_cast<std::size_t>(i)].next >= 0) {
-          join(static_cast<std::size_t>(i), v, triangles, faint);
+          join(static_cast<std::size_t>(i), v, triangles);
         }
       }
     }
@@ -89,8 +88,7 @@ class LineJoiner {
     return best;
   }
 
-  void join(std::size_t i, std::size_t v, std::vector<LineStrip::Triangle>& triangles,
-            std::vector<LineStrip::Triangle>& faint) const {
+  void join(std::size_t i, std::size_t v, std::vector<LineStrip::Triangle>& triangles) const {
     const auto below = static_cast<std::size_t>(own_.rays[i].next);
     const Vector3d& a = own_points_[i];
     const Vector3d& b = own_points_[below];
@@ -108,15 +106,13 @@ class LineJoiner {
       return static_cast<std::uint32_t>(first_ + point);
     };
     const auto own_at = [](std::size_t point) { return static_cast<std::uint32_t>(point); };
-    // A piece is faint as a whole: the first corners tell.
-    auto& joined = own_.rays[i].is_faint || other_.rays[j].is_faint ? faint : triangles;
     if (near(a, b, max_row_side)) {
-      joined.push_back({own_at(i), own_at(below), at(j)});
+      triangles.push_back({own_at(i), own_at(below), at(j)});
     }
     if (const std::int32_t next = other_.rays[j].next; next >= 0) {
       const Vector3d& d = other_points_[static_cast<std::size_t>(next)];
       if (near(c, d, max_row_side) && joins(b, d, limits)) {
-        joined.push_back({own_at(below), at(static_cast<std::size_t>(next)), at(j)});
+        triangles.push_back({own_at(below), at(static_cast<std::size_t>(next)), at(j)});
       }
     }
   }
@@ -146,7 +142,7 @@ LineStrip make_strip(const PlacedLine& own, const PlacedLine* previous, const Pl
     }
     const LineJoiner joiner(own, own_points, *other, strip.points.size());
     append(joiner.other_points());
-    return joiner.triangles(strip.faint);
+    return joiner.triangles();
   };
   strip.to_previous = join(previous);
   strip.to_next = join(next);

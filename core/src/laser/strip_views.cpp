@@ -59,9 +59,9 @@ class StripView {
     }
     observations_.resize(static_cast<std::size_t>(lens_.width) *
                          static_cast<std::size_t>(lens_.height));
-    for (const auto* triangles : {&strip_.to_previous, &strip_.to_next, &strip_.faint}) {
+    for (const auto* triangles : {&strip_.to_previous, &strip_.to_next}) {
       for (const LineStrip::Triangle& triangle : *triangles) {
-        draw(triangle, triangles == &strip_.faint ? 0.0F : weight_of_line);
+        draw(triangle);
       }
     }
     return ConditionedDepth(lens_, sensor_from_object_, std::move(observations_));
@@ -79,7 +79,7 @@ class StripView {
   /// Fits the view's size and principal point to the strip. @return false if there is no view
   bool find_window() {
     double u0 = 1e9, u1 = -1e9, v0 = 1e9, v1 = -1e9;
-    for (const auto* triangles : {&strip_.to_previous, &strip_.to_next, &strip_.faint}) {
+    for (const auto* triangles : {&strip_.to_previous, &strip_.to_next}) {
       for (const LineStrip::Triangle& triangle : *triangles) {
         for (const std::uint32_t point : triangle) {
           if (!(points_[point].z() > nearest_z)) {
@@ -105,12 +105,11 @@ class StripView {
     return true;
   }
 
-  /// @param weight  of its surface; 0: it is none, but shows free space
-  void draw(const LineStrip::Triangle& triangle, float weight) {
+  void draw(const LineStrip::Triangle& triangle) {
     std::array<ImageCorner, 3> corners;
     std::ranges::transform(triangle, corners.begin(),
                            [this](std::uint32_t point) { return to_corner(point); });
-    if (const std::optional<DepthObservation> plane = find_plane(triangle, weight)) {
+    if (const std::optional<DepthObservation> plane = find_plane(triangle)) {
       visit_pixels(corners, lens_.width, lens_.height,
                    [&](int u, int v, const std::array<double, 3>& shares) {
                      set(u, v, triangle, shares, inverse_depth_at(corners, shares), *plane);
@@ -119,8 +118,7 @@ class StripView {
   }
 
   /// The plane of a triangle; nothing at grazing incidence.
-  std::optional<DepthObservation> find_plane(const LineStrip::Triangle& triangle,
-                                             float weight) const {
+  std::optional<DepthObservation> find_plane(const LineStrip::Triangle& triangle) const {
     const Eigen::Vector3d& p = points_[triangle[0]];
     const Eigen::Vector3d side = points_[triangle[1]] - p;
     const Eigen::Vector3d normal = side.cross(points_[triangle[2]] - p);
@@ -138,7 +136,7 @@ class StripView {
     return DepthObservation{.normal = {static_cast<float>(unit.x()), static_cast<float>(unit.y()),
                                        static_cast<float>(unit.z())},
                             .offset = static_cast<float>(-unit.dot(p)),
-                            .weight = weight};
+                            .weight = weight_of_line};
   }
 
   void set(int u, int v, const LineStrip::Triangle& triangle, const std::array<double, 3>& shares,

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -52,8 +51,7 @@ class SolidReconstructor final : public Reconstructor {
   int min_votes() const;
   CompactTsdf integrate_slabs(const SnapshotSource& snapshots, const std::stop_token& stop);
   int base_layer() const;
-  std::vector<ConditionedDepth> condition(const Snapshot& snapshot);
-  std::optional<double> max_bulge() const;
+  std::vector<ConditionedDepth> condition(const Snapshot& snapshot) const;
   HoleFilledSdf fill_holes(const CompactTsdf& known, const std::stop_token& stop,
                            ThreadTeam& team) const;
   StandingParts keep_parts(const HoleFilledSdf& sdf, const std::stop_token& stop,
@@ -66,8 +64,7 @@ class SolidReconstructor final : public Reconstructor {
 
   ReconstructOptions options_;
   TsdfVolume volume_;
-  std::size_t added_ = 0;                 // snapshots
-  std::atomic<bool> sees_lines_ = false;  // whether a snapshot has strips of laser lines
+  std::size_t added_ = 0;  // snapshots
 
   struct Counted {
     SurfaceCount count = {};

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "octurn/error.hpp"
 
@@ -23,11 +22,8 @@ constexpr int max_stale_pictures = 30;
 constexpr std::uint8_t white = 240;
 constexpr double max_white_share = 0.25;
 
-// A line: in one of 30 rows a pixel that is brighter by as much as a line must be to be found, and
-// by six times the noise between both pictures, which a row of 3000 pixels does not reach by
-// chance.
-constexpr int min_line_levels = 8;
-constexpr int noises_of_line = 6;
+// A line: in one of 30 rows a pixel that is brighter by ten times a camera's noise.
+constexpr int line_levels = 24;
 constexpr int rows_per_line_row = 30;
 
 /// `Camera::read`, or the same with colours.
@@ -70,23 +66,6 @@ void expect_size_for_scan(const Picture& picture, const Intrinsics& lens,
   }
 }
 
-/// The level by which a pixel of `lit` is brighter than in `dark` if it shows a line. The median
-/// change is the room's, and the median deviation from it is 0.67 of the noise's sigma.
-int line_level(const Picture& dark, const Picture& lit) {
-  std::vector<int> changes(lit.samples.size());
-  std::ranges::transform(lit.samples, dark.samples, changes.begin(),
-                         [](int with, int without) { return with - without; });
-  const auto median = [&] {
-    const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
-    std::ranges::nth_element(changes, middle);
-    return *middle;
-  };
-  const int room = median();
-  std::ranges::transform(changes, changes.begin(),
-                         [room](int change) { return std::abs(change - room); });
-  return room + std::max(min_line_levels, noises_of_line * median() * 3 / 2);
-}
-
 }  // namespace
 
 void expect_dark_room(const Picture& dark, const std::string& camera) {
@@ -104,7 +83,6 @@ void expect_dark_room(const Picture& dark, const std::string& camera) {
 
 void expect_line(const Picture& dark, const Picture& lit, const std::string& laser) {
   const auto width = static_cast<std::size_t>(lit.width);
-  const int line_levels = line_level(dark, lit);
   int rows = 0;
   for (std::size_t first = 0; first < lit.samples.size(); first += width) {
     int brighter = 0;
@@ -162,7 +140,7 @@ std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& 
 
 std::optional<StopPictures> take_pictures(Rig& rig, const Stop& at, const std::stop_token& stop,
                                           const ScanObserver& observer, const KeepPicture& keep) {
-  rig.turntable();  // whose faults come before the camera's
+  rig.turntable();  // whose faults are configured before the camera's
   rig.camera();
   if (!turn_to(rig, at, stop, observer)) {
     return std::nullopt;

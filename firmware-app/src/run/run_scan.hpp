@@ -17,7 +17,7 @@ namespace octurn {
 /// stop's surface ends at the last stop's lines. Stored snapshots are kept however the scan ends. A
 /// folder with some snapshots is continued, and gives the same model as an uninterrupted scan.
 ///
-/// Unless the settings say `told`, the sensor's pose is solved from the snapshots at the last
+/// Unless the settings say `configured`, the sensor's pose is solved from the snapshots at the last
 /// stop. A pose that is accepted and does not merely confirm the configured one is stored beside it
 /// in scan.json, and the model is built again from the stored snapshots.
 ///

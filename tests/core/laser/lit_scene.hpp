@@ -2,7 +2,6 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -111,36 +110,11 @@ inline Scan laser_rig(int stops) {
   return scan;
 }
 
-/// What real light does besides drawing lines; the defaults are none of it.
-struct StrayLight {
-  double exposure = 1;  ///< of the line: 2 saturates its middle
-  /// Whether a line has the halo of plaster, measured on a green laser: of its peak, 5, 10, 20 and
-  /// 40 pixels to each side, these shares.
-  bool has_halo = false;
-  /// Grey levels of the light that a lit object throws on the white squares of a platform that is
-  /// printed with squares of 9 mm.
-  double indirect = 0;
-
-  static double halo(double off) {
-    constexpr std::array<double, 6> at{0, 5, 10, 20, 40, 60};
-    constexpr std::array<double, 6> left{0.26, 0.18, 0.08, 0.03, 0.01, 0};
-    constexpr std::array<double, 6> right{0.33, 0.23, 0.08, 0.02, 0.01, 0};
-    const auto& shares = off < 0 ? left : right;
-    for (std::size_t i = 1; i < at.size(); ++i) {
-      if (std::abs(off) <= at[i]) {
-        const double part = (std::abs(off) - at[i - 1]) / (at[i] - at[i - 1]);
-        return std::lerp(shares[i - 1], shares[i], part);
-      }
-    }
-    return 0;
-  }
-};
-
 /// Draws pictures of a scene as a laser rig sees it.
 class LaserPictures {
  public:
-  LaserPictures(const Scan& scan, LitScene scene, double noise, const StrayLight& stray = {})
-      : scan_(scan), scene_(std::move(scene)), noise_(noise), stray_(stray) {}
+  LaserPictures(const Scan& scan, LitScene scene, double noise)
+      : scan_(scan), scene_(std::move(scene)), noise_(noise) {}
 
   /// @param laser  null for the dark picture
   std::vector<std::uint8_t> draw(double angle, const Laser* laser) {
@@ -148,18 +122,14 @@ class LaserPictures {
     const Eigen::Isometry3d pose = object_from_sensor(scan_.platform_from_sensor, angle);
     std::vector<std::uint8_t> samples;
     for (int v = 0; v < lens.height; ++v) {
-      std::vector<double> row(static_cast<std::size_t>(lens.width), 0.0);
-      for (int u = 0; laser != nullptr && u < lens.width; ++u) {
-        if (is_near(*laser, pose, u, v)) {
+      for (int u = 0; u < lens.width; ++u) {
+        double light = 6;  // room light, grey levels
+        if (laser != nullptr && is_near(*laser, pose, u, v)) {
           for (int part = 0; part < parts; ++part) {
-            row[static_cast<std::size_t>(u)] +=
-                stray_.exposure * of_line(*laser, pose, u + (part + 0.5) / parts - 0.5, v) / parts;
+            light += of_line(*laser, pose, u + (part + 0.5) / parts - 0.5, v) / parts;
           }
         }
-      }
-      add_stray_light(row, pose, v);
-      for (const double line : row) {
-        const double light = room_light + line + noise_ * 3.5 * (random_.uniform() - 0.5);
+        light += noise_ * 3.5 * (random_.uniform() - 0.5);  // 3.5 is about sqrt(12): deviation 1
         samples.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(light), 0L, 255L)));
       }
     }
@@ -167,30 +137,8 @@ class LaserPictures {
   }
 
  private:
-  static constexpr double room_light = 6;     // grey levels
   static constexpr int parts = 3;             // samples across a pixel
   static constexpr double half_width = 8e-4;  // metres, to 1/e^2 of the peak
-
-  /// Adds halo and indirect light to a row that has a line.
-  void add_stray_light(std::vector<double>& row, const Eigen::Isometry3d& pose, int v) const {
-    const auto peak = std::ranges::max_element(row);
-    if (*peak <= 0) {
-      return;
-    }
-    const double level = *peak;
-    const auto middle = static_cast<double>(peak - row.begin());
-    for (std::size_t u = 0; u < row.size(); ++u) {
-      const auto column = static_cast<double>(u);
-      if (stray_.has_halo) {
-        row[u] += level * StrayLight::halo(column - middle);
-      }
-      Eigen::Vector3d point;
-      if (stray_.indirect > 0 && cast(pose, column, v, point) && std::abs(point.z()) < 1e-6) {
-        const Eigen::Vector2d cell = (point.head<2>() / 0.009).array().floor();
-        row[u] += std::fmod(std::abs(cell.sum()), 2) == 0 ? stray_.indirect : 0;
-      }
-    }
-  }
 
   /// The first surface on a pixel's ray. `point` receives it in the object's frame.
   std::optional<LitScene::Hit> cast(const Eigen::Isometry3d& pose, double u, double v,
@@ -244,15 +192,14 @@ class LaserPictures {
   const Scan& scan_;
   LitScene scene_;
   double noise_;
-  StrayLight stray_;
   Random random_{7};
 };
 
 /// Writes a scan folder whose pictures show the scene.
-inline Scan write_laser_scan(const std::filesystem::path& folder, const LitScene& scene, int stops,
-                             const StrayLight& stray = {}) {
+inline Scan write_laser_scan(const std::filesystem::path& folder, const LitScene& scene,
+                             int stops) {
   const Scan scan = laser_rig(stops);
-  LaserPictures pictures(scan, scene, 0.5, stray);
+  LaserPictures pictures(scan, scene, 0.5);
   std::filesystem::create_directories(folder / "snapshots");
   for (const Shot& shot : scan.shots) {
     for (std::size_t i = 0; i < shot.pictures.size(); ++i) {

@@ -140,7 +140,7 @@ std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& 
 
 std::optional<StopPictures> take_pictures(Rig& rig, const Stop& at, const std::stop_token& stop,
                                           const ScanObserver& observer, const KeepPicture& keep) {
-  rig.turntable();  // whose faults are configured before the camera's
+  rig.turntable();  // whose faults come before the camera's
   rig.camera();
   if (!turn_to(rig, at, stop, observer)) {
     return std::nullopt;

@@ -60,6 +60,15 @@ function poseFacts({calibration}) {
 const droppedFacts = ({dropped_parts, dropped_volume_cm3}) => !dropped_parts || !(Number(dropped_volume_cm3) >= 0.1) ? [] :
   [{label: text('fact.left-out'), text: `${text('count.parts', {count: dropped_parts})}, ${format.number(Number(dropped_volume_cm3))} cm³`}];
 
+/** What motor and platform did beside what they should. @param {Scan} scan @returns {{label: string, text: string, tone?: Tone}[]} */
+const motorFacts = ({late_pulses, slips, seconds_settling}) => [
+  ...(late_pulses > 0 ? [{label: text('fact.motor'), text: text('fact.late', {count: format.number(late_pulses)})}] : []),
+  ...(slips > 0 ?
+    [{label: text('fact.motor'), text: text('fact.slips', {count: slips}), tone: /** @type {const} */ ('warn')}] : []),
+  ...(seconds_settling >= 0.1 ?
+    [{label: text('fact.platform'), text: text('fact.swung', {time: `${format.number(seconds_settling)} s`})}] : []),
+];
+
 /** @param {Scan} scan @returns {{label: string, text: string, tone?: Tone}[]} */
 function factsOf(scan) {
   const {model, settings} = scan;
@@ -68,9 +77,7 @@ function factsOf(scan) {
     {label: text('fact.snapshots'), text: text(`fact.${settings.filter}`, {taken: taken(scan), frames: settings.frames})},
     {label: text('fact.taken'), text: scan.seconds_elapsed > 0 ? text('fact.took', {when, duration: format.duration(scan.seconds_elapsed)}) : when},
     ...poseFacts(scan),
-    ...(scan.late_pulses > 0 ? [{label: text('fact.motor'), text: text('fact.late', {count: format.number(scan.late_pulses)})}] : []),
-    ...(scan.slips > 0 ? [{label: text('fact.motor'), text: text('fact.slips', {count: scan.slips}), tone: /** @type {const} */ ('warn')}] : []),
-    ...(scan.seconds_settling >= 0.1 ? [{label: text('fact.platform'), text: text('fact.swung', {time: `${format.number(scan.seconds_settling)} s`})}] : []),
+    ...motorFacts(scan),
   ];
   if (!model) {
     return capture;

@@ -106,11 +106,10 @@ std::optional<Arrival> arrival_of(const UsbPacket& packet) {
 
 /// The number of packets lost between two that arrived one after the other.
 std::size_t lost_between(const Arrival& before, const Arrival& after) {
-  const int configured = static_cast<std::uint8_t>(after.sequence - before.sequence - 1);
+  const int skipped = static_cast<std::uint8_t>(after.sequence - before.sequence - 1);
   const double due = static_cast<double>(after.time_us - before.time_us) * packets_per_us;
-  const double turns =
-      due > 2 * sequence_range ? std::round((due - configured) / sequence_range) : 0;
-  return static_cast<std::size_t>(configured) + sequence_range * static_cast<std::size_t>(turns);
+  const double turns = due > 2 * sequence_range ? std::round((due - skipped) / sequence_range) : 0;
+  return static_cast<std::size_t>(skipped) + sequence_range * static_cast<std::size_t>(turns);
 }
 
 }  // namespace

@@ -33,13 +33,12 @@ double x_in_force(const CalibrationStore& store) {
 TEST(CalibrationStore, LeavesTheSettingsPoseInForceUntilThereIsAnother) {
   const TemporaryFolder folder;
   const CalibrationStore store(folder.path());
-  ScanSettings configured;
-  EXPECT_EQ(store.records(configured).front().origin, PoseOrigin::drawing);
-  configured.platform_from_sensor.translation().x() = 0.003;
-  EXPECT_EQ(store.records(configured).front().origin, PoseOrigin::settings);
-  EXPECT_EQ(store.records(configured).size(), 1U);
-  EXPECT_EQ(store.in_force(configured).platform_from_sensor.matrix(),
-            configured.platform_from_sensor.matrix());
+  ScanSettings told;
+  EXPECT_EQ(store.records(told).front().origin, PoseOrigin::drawing);
+  told.platform_from_sensor.translation().x() = 0.003;
+  EXPECT_EQ(store.records(told).front().origin, PoseOrigin::settings);
+  EXPECT_EQ(store.records(told).size(), 1U);
+  EXPECT_EQ(store.in_force(told).platform_from_sensor.matrix(), told.platform_from_sensor.matrix());
 }
 
 TEST(CalibrationStore, KeepsAPoseOverARestartToTheLastBit) {
@@ -193,10 +192,10 @@ TEST(CalibrationStore, KeepsThePosesOfARigWithLasersFromThoseOfADepthSensor) {
   const TemporaryFolder folder;
   CalibrationStore(folder.path(), SensorKind::laser_line).set(record_of("one", 0.1));
   EXPECT_EQ(CalibrationStore(folder.path()).records({}).front().origin, PoseOrigin::drawing);
-  ScanSettings configured;
-  configured.platform_from_sensor = nominal_platform_from_camera();
+  ScanSettings told;
+  told.platform_from_sensor = nominal_platform_from_camera();
   const CalibrationStore store(folder.path(), SensorKind::laser_line);
-  EXPECT_EQ(store.records(configured, "two").front().origin, PoseOrigin::drawing);
+  EXPECT_EQ(store.records(told, "two").front().origin, PoseOrigin::drawing);
 }
 
 TEST(CalibrationStore, NamesADamagedFileOfARigWithLasers) {

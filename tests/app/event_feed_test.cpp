@@ -22,12 +22,12 @@ std::string to_text(std::span<const std::byte> bytes) {
 
 /// Runs a stream until it ends or `wants_more` refuses. @return its text
 std::string all_of(ByteStream stream, const std::function<bool(const std::string&)>& wants_more) {
-  std::string configured;
+  std::string told;
   stream.make([&](std::span<const std::byte> bytes) {
-    configured += to_text(bytes);
-    return wants_more(configured);
+    told += to_text(bytes);
+    return wants_more(told);
   });
-  return configured;
+  return told;
 }
 
 bool has(const std::string& text, std::string_view part) {
@@ -37,16 +37,16 @@ bool has(const std::string& text, std::string_view part) {
 TEST(EventFeed, TellsWhatIsAndThenWhatChanges) {
   int value = 1;
   EventFeed feed([&] { return std::vector<News>{{"status", std::to_string(value)}}; }, brisk);
-  all_of(*feed.watch(""), [&](const std::string& configured) {
-    value = has(configured, "data: 1\n") ? 2 : 1;
-    return !has(configured, "data: 2\n");
+  all_of(*feed.watch(""), [&](const std::string& told) {
+    value = has(told, "data: 1\n") ? 2 : 1;
+    return !has(told, "data: 2\n");
   });
   EXPECT_EQ(value, 2);
 }
 
 TEST(EventFeed, GoesOnWhereAClientWas) {
   EventFeed feed([] { return std::vector<News>{{"status", "1"}}; }, brisk);
-  const auto until_event = [](const std::string& configured) { return !has(configured, "data:"); };
+  const auto until_event = [](const std::string& told) { return !has(told, "data:"); };
   const std::string first = all_of(*feed.watch(""), until_event);
   const std::size_t id = first.find("id: ") + 4;
   const std::string last = first.substr(id, first.find('\n', id) - id);
@@ -70,16 +70,15 @@ TEST(EventFeed, FindsByItsHeartbeatWhoHasGone) {
   FeedLimits limits = brisk;
   limits.heartbeat = 1ms;
   EventFeed feed([] { return std::vector<News>{}; }, limits);
-  all_of(*feed.watch(""),
-         [](const std::string& configured) { return !has(configured, "event: heartbeat"); });
+  all_of(*feed.watch(""), [](const std::string& told) { return !has(told, "event: heartbeat"); });
 }
 
 TEST(EventFeed, EndsAStreamAfterItsLifetime) {
   FeedLimits limits = brisk;
   limits.lifetime = 0ms;
   EventFeed feed([] { return std::vector<News>{}; }, limits);
-  const std::string configured = all_of(*feed.watch(""), [](const std::string&) { return true; });
-  EXPECT_EQ(configured, "retry: 1000\n\n");
+  const std::string told = all_of(*feed.watch(""), [](const std::string&) { return true; });
+  EXPECT_EQ(told, "retry: 1000\n\n");
 }
 
 TEST(EventFeed, EndsItsStreamsAtOnce) {
@@ -110,21 +109,20 @@ class EventServer {
   FileDescriptor watch() const {
     FileDescriptor socket = connected(port());
     send_text(socket, "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    std::string configured;
-    for (char byte = 0;
-         !has(configured, "data: 1\n\n") && ::recv(socket.number(), &byte, 1, 0) == 1;) {
-      configured += byte;
+    std::string told;
+    for (char byte = 0; !has(told, "data: 1\n\n") && ::recv(socket.number(), &byte, 1, 0) == 1;) {
+      told += byte;
     }
-    EXPECT_FALSE(has(configured, "Content-Length"));
+    EXPECT_FALSE(has(told, "Content-Length"));
     return socket;
   }
 
   int status_of_one_more() const {
     const FileDescriptor socket = connected(port());
     send_text(socket, "GET /events HTTP/1.1\r\nHost: localhost\r\n\r\n");
-    std::string configured(12, '\0');  // "HTTP/1.1 200"
-    EXPECT_EQ(::recv(socket.number(), configured.data(), configured.size(), MSG_WAITALL), 12);
-    return std::stoi(configured.substr(9));
+    std::string told(12, '\0');  // "HTTP/1.1 200"
+    EXPECT_EQ(::recv(socket.number(), told.data(), told.size(), MSG_WAITALL), 12);
+    return std::stoi(told.substr(9));
   }
 
   ~EventServer() { feed_.end(); }

@@ -81,12 +81,12 @@ TEST(HttpServer, AnswersAHeadWithoutTheBody) {
 /// Sends a request on a kept-alive connection, and reads its response, whose body has 4 bytes.
 std::string ask_on(const FileDescriptor& socket) {
   send_text(socket, "GET / HTTP/1.1\r\nHost: localhost\r\nConnection: keep-alive\r\n\r\n");
-  std::string configured;
+  std::string told;
   for (char byte = 0;
-       !configured.ends_with("\r\n\r\nbody") && ::recv(socket.number(), &byte, 1, 0) == 1;) {
-    configured += byte;
+       !told.ends_with("\r\n\r\nbody") && ::recv(socket.number(), &byte, 1, 0) == 1;) {
+    told += byte;
   }
-  return configured;
+  return told;
 }
 
 TEST(HttpServer, KeepsTheConnectionOfWhoAsksForIt) {

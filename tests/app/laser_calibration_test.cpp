@@ -133,9 +133,9 @@ TEST_F(LaserCalibrationOfARig, StaysAsItIsWhereATurnIsRefused) {
   const CalibrationRun run = turn(scanner);
   ASSERT_EQ(run.state, CalibrationRun::State::refused);
   EXPECT_FALSE(run.report->calibration.reason.empty());
-  ScanSettings configured;
-  configured.platform_from_sensor = told_.platform_from_sensor;
-  EXPECT_EQ(scanner.calibration().records(configured).front().origin, PoseOrigin::drawing);
+  ScanSettings told;
+  told.platform_from_sensor = told_.platform_from_sensor;
+  EXPECT_EQ(scanner.calibration().records(told).front().origin, PoseOrigin::drawing);
 }
 
 TEST_F(LaserCalibrationOfARig, EndsWithItsLasersOffWhenATurnIsCancelled) {

@@ -85,9 +85,9 @@ struct Timing {
 /// @param disk  seconds at the end of each stop to write its last picture and scan.json
 Timing time_400_stops(double readout, double disk, const Motion& motion) {
   Course course;
-  LaserSettings configured;
-  configured.lens = {.width = width, .height = height};
-  Rig rig({.speed = 1e6, .laser = configured, .open_camera = [&](const LaserSettings&) {
+  LaserSettings told;
+  told.lens = {.width = width, .height = height};
+  Rig rig({.speed = 1e6, .laser = told, .open_camera = [&](const LaserSettings&) {
              return CameraAndLasers{.camera = std::make_unique<RunningCamera>(course, readout),
                                     .set_line = [&](std::size_t, bool on) {
                                       course.lit_at =

@@ -95,19 +95,19 @@ class LaserSceneTest : public ::testing::Test {
 constexpr double pixel = 0.0012;
 
 TEST_F(LaserSceneTest, HasTheLineWhereItsPlaneMeetsTheBoxOrThePlatform) {
-  const LaserSimulation configured = simulation();
-  LaserScene scene(configured);
+  const LaserSimulation told = simulation();
+  LaserScene scene(told);
   const Picture dark = scene.expose(0, {});
   for (std::size_t laser = 0; laser < 2; ++laser) {
     const Picture lit = scene.expose(0, laser);
     int on_box = 0;
     int on_platform = 0;
-    for (int v = 0; v < configured.lens.height; ++v) {
+    for (int v = 0; v < told.lens.height; ++v) {
       const auto u = brightest(dark, lit, v);
       if (!u) {
         continue;
       }
-      const Vector3d point = meet(configured, laser, *u, v);
+      const Vector3d point = meet(told, laser, *u, v);
       const double side = std::max(std::abs(point.x()), std::abs(point.y())) - 0.03;  // box: 0
       const bool is_top = side < pixel && std::abs(point.z() - 0.04) < 2 * pixel;
       const bool is_side = std::abs(side) < 2 * pixel && point.z() > -pixel && point.z() < 0.042;
@@ -124,24 +124,23 @@ TEST_F(LaserSceneTest, HasTheLineWhereItsPlaneMeetsTheBoxOrThePlatform) {
 }
 
 TEST_F(LaserSceneTest, ThrowsTheLasersShadow) {
-  LaserSimulation configured = simulation();
-  configured.lasers = {nominal_laser("aside", 1.2)};  // so that the camera sees the shadow
+  LaserSimulation told = simulation();
+  told.lasers = {nominal_laser("aside", 1.2)};  // so that the camera sees the shadow
   // The camera sees that place at a grazing angle; large pixels would blur the line away.
-  configured.lens = {
-      .width = 1640, .height = 1232, .fx = 1364.8, .fy = 1364.8, .cx = 819.5, .cy = 615.5};
-  const Vector3d source = configured.platform_from_sensor * *configured.lasers[0].source;
+  told.lens = {.width = 1640, .height = 1232, .fx = 1364.8, .fy = 1364.8, .cx = 819.5, .cy = 615.5};
+  const Vector3d source = told.platform_from_sensor * *told.lasers[0].source;
   // Length of the shadow behind the box's edge at x = -0.03, by similar triangles: the edge's
   // distance from the laser, times the box's height of 4 cm over the laser's height above it.
   const double shadow = (source.x() + 0.03) * 0.04 / (source.z() - 0.04);
   const auto lit_points = [&](double from_x, double to_x) {
-    LaserScene scene(configured);
+    LaserScene scene(told);
     const Picture dark = scene.expose(0, {});
     const Picture lit = scene.expose(0, 0);
     int points = 0;
-    for (int v = 0; v < configured.lens.height; ++v) {
-      for (int u = 0; u < configured.lens.width; ++u) {
-        const auto sample = static_cast<std::size_t>(v * configured.lens.width + u);
-        const Vector3d point = meet(configured, 0, u, v);
+    for (int v = 0; v < told.lens.height; ++v) {
+      for (int u = 0; u < told.lens.width; ++u) {
+        const auto sample = static_cast<std::size_t>(v * told.lens.width + u);
+        const Vector3d point = meet(told, 0, u, v);
         const bool is_there =
             std::abs(point.z()) < 2 * pixel && point.x() > from_x && point.x() < to_x;
         points += is_there && lit.samples[sample] > dark.samples[sample] + 8 ? 1 : 0;
@@ -181,22 +180,19 @@ TEST_F(LaserSceneTest, HasColoursOfThePicturesLuminance) {
 
 // Red is strongest in the direction of the object's Y axis, and blue in that of its X axis.
 TEST_F(LaserSceneTest, PaintsTheObjectOnceRoundItsAxis) {
-  const LaserSimulation configured = simulation();
-  LaserScene scene(configured);
+  const LaserSimulation told = simulation();
+  LaserScene scene(told);
   constexpr double quarter = std::numbers::pi / 2;
   for (int side = 0; side < 4; ++side) {
     // This side faces the camera, which looks along Y.
     const ColourExposure seen = scene.expose_in_colour(side * quarter, {});
-    const Vector3d at = configured.platform_from_sensor.inverse() * Vector3d(0, -0.03, 0.02);
-    const int u =
-        static_cast<int>(std::lround(configured.lens.fx * at.x() / at.z() + configured.lens.cx));
-    const int v =
-        static_cast<int>(std::lround(configured.lens.fy * at.y() / at.z() + configured.lens.cy));
+    const Vector3d at = told.platform_from_sensor.inverse() * Vector3d(0, -0.03, 0.02);
+    const int u = static_cast<int>(std::lround(told.lens.fx * at.x() / at.z() + told.lens.cx));
+    const int v = static_cast<int>(std::lround(told.lens.fy * at.y() / at.z() + told.lens.cy));
     Vector3d sum = Vector3d::Zero();
     for (int y = v - 10; y <= v + 10; ++y) {
       for (int x = u - 3; x <= u + 3; ++x) {
-        const auto& [r, g, b] =
-            seen.colours[static_cast<std::size_t>(y * configured.lens.width + x)];
+        const auto& [r, g, b] = seen.colours[static_cast<std::size_t>(y * told.lens.width + x)];
         sum += Vector3d(r, g, b);
       }
     }
@@ -208,8 +204,8 @@ TEST_F(LaserSceneTest, PaintsTheObjectOnceRoundItsAxis) {
 }
 
 TEST_F(LaserSceneTest, TurnsWithThePlatform) {
-  const LaserSimulation configured = simulation();
-  LaserScene scene(configured);
+  const LaserSimulation told = simulation();
+  LaserScene scene(told);
   constexpr double quarter = std::numbers::pi / 2;
   for (const double angle : {0.0, quarter / 2, quarter}) {
     const Picture dark = scene.expose(angle, {});
@@ -218,7 +214,7 @@ TEST_F(LaserSceneTest, TurnsWithThePlatform) {
     int points = 0;
     for (int v = 0; v < lit.height; ++v) {
       if (const auto u = brightest(dark, lit, v)) {
-        const Vector3d point = meet(configured, 0, *u, v);
+        const Vector3d point = meet(told, 0, *u, v);
         const bool is_side = point.z() > 0.005 && point.z() < 0.035;
         sum += is_side ? std::hypot(point.x(), point.y()) : 0;
         points += is_side ? 1 : 0;

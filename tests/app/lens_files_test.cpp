@@ -23,7 +23,7 @@ LensReport some_report() {
   return report;
 }
 
-CameraLens configured() { return told_lens(LaserSettings{}); }
+CameraLens told() { return told_lens(LaserSettings{}); }
 
 TEST(LensFiles, KeepWhatABoardToldOfACamera) {
   const TemporaryFolder data;
@@ -46,12 +46,11 @@ TEST(LensFiles, GoWithTheirCameraAndItsPictureSize) {
   const TemporaryFolder data;
   keep_lens(data.path(), "A", some_report());
 
-  EXPECT_EQ(lens_in_force(data.path(), "A", configured()).k1, -0.0625);
-  EXPECT_EQ(lens_in_force(data.path(), "A", configured()).intrinsics.fx, 690.25);
-  EXPECT_EQ(lens_in_force(data.path(), "B", configured()).intrinsics.fx,
-            configured().intrinsics.fx);
-  EXPECT_EQ(lens_in_force(data.path(), "", configured()).intrinsics.fx, configured().intrinsics.fx);
-  CameraLens larger = configured();
+  EXPECT_EQ(lens_in_force(data.path(), "A", told()).k1, -0.0625);
+  EXPECT_EQ(lens_in_force(data.path(), "A", told()).intrinsics.fx, 690.25);
+  EXPECT_EQ(lens_in_force(data.path(), "B", told()).intrinsics.fx, told().intrinsics.fx);
+  EXPECT_EQ(lens_in_force(data.path(), "", told()).intrinsics.fx, told().intrinsics.fx);
+  CameraLens larger = told();
   larger.intrinsics.width = 1640;
   EXPECT_EQ(lens_in_force(data.path(), "A", larger).k1, 0);
 }

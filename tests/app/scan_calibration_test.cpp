@@ -27,7 +27,7 @@ double origins_apart_mm(const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) 
 
 class ScanCalibrationTest : public ::testing::Test {
  protected:
-  static ScanSettings configured(const Eigen::Isometry3d& pose) {
+  static ScanSettings told(const Eigen::Isometry3d& pose) {
     ScanSettings settings = few_snapshots(12);
     settings.platform_from_sensor = pose;
     return settings;
@@ -68,7 +68,7 @@ class ScanCalibrationTest : public ::testing::Test {
 };
 
 TEST_F(ScanCalibrationTest, BuildsTheModelAgainWhereTheToldPoseIsWrong) {
-  const ScanSettings settings = configured(wrong_pose());
+  const ScanSettings settings = told(wrong_pose());
   const std::vector<Phase> phases = scan(settings, folder_.path());
   ASSERT_GE(phases.size(), 3U);
   EXPECT_EQ(std::vector<Phase>(phases.end() - 3, phases.end()),
@@ -88,8 +88,8 @@ TEST_F(ScanCalibrationTest, BuildsTheModelAgainWhereTheToldPoseIsWrong) {
 
 TEST_F(ScanCalibrationTest, KeepsAPoseThatAnEarlierScanHasSolved) {
   const TemporaryFolder first;
-  scan(configured(wrong_pose()), first.path());
-  const ScanSettings settings = configured(model_pose(read_scan(first.path())));
+  scan(told(wrong_pose()), first.path());
+  const ScanSettings settings = told(model_pose(read_scan(first.path())));
 
   const std::vector<Phase> phases = scan(settings, folder_.path());
   EXPECT_EQ(std::vector<Phase>(phases.end() - 2, phases.end()),
@@ -100,7 +100,7 @@ TEST_F(ScanCalibrationTest, KeepsAPoseThatAnEarlierScanHasSolved) {
 }
 
 TEST_F(ScanCalibrationTest, SolvesNothingWhereThePoseIsTold) {
-  ScanSettings settings = configured(wrong_pose());
+  ScanSettings settings = told(wrong_pose());
   settings.pose = PoseSource::configured;
   const std::vector<Phase> phases = scan(settings, folder_.path());
   EXPECT_EQ(std::ranges::count(phases, Phase::calibrating), 0);
@@ -109,7 +109,7 @@ TEST_F(ScanCalibrationTest, SolvesNothingWhereThePoseIsTold) {
 }
 
 TEST_F(ScanCalibrationTest, KeepsTheToldPoseWhereTheSolvedOneIsRefused) {
-  ScanSettings settings = configured(wrong_pose());
+  ScanSettings settings = told(wrong_pose());
   settings.snapshots = 2;
   scan(settings, folder_.path());
   ASSERT_TRUE(report_);
@@ -119,7 +119,7 @@ TEST_F(ScanCalibrationTest, KeepsTheToldPoseWhereTheSolvedOneIsRefused) {
 }
 
 TEST_F(ScanCalibrationTest, CountsTheSnapshotsThatItBuildsAgain) {
-  scan(configured(wrong_pose()), folder_.path());
+  scan(told(wrong_pose()), folder_.path());
   ASSERT_FALSE(rebuilt_.empty());
   EXPECT_TRUE(std::ranges::is_sorted(rebuilt_));
   EXPECT_EQ(rebuilt_.back(), 12);
@@ -127,7 +127,7 @@ TEST_F(ScanCalibrationTest, CountsTheSnapshotsThatItBuildsAgain) {
 
 // Each folder is as a killed scan leaves it, and is resumed later.
 TEST_F(ScanCalibrationTest, GivesTheSameModelWhereverItIsInterrupted) {
-  const ScanSettings settings = configured(wrong_pose());
+  const ScanSettings settings = told(wrong_pose());
   scan(settings, folder_.path());
   const std::string model = content_of(folder_.path() / "Scan.stl");
   const std::string solved = content_of(folder_.path() / "scan.json");

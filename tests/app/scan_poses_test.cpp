@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Settings with the configured sensor pose, so that nothing is solved.
+/// Settings with the told sensor pose, so that nothing is solved.
 ScanSettings quick(int snapshots = 3) {
   ScanSettings settings = few_snapshots(snapshots);
   settings.pose = PoseSource::configured;

@@ -80,7 +80,7 @@ class SimulatedLaserRig {
   std::atomic<int> lost_pictures = 0;                ///< so many of the next are never handed out
   std::atomic<int> pictures = 0;                     ///< that were handed out
   std::optional<std::size_t> dark_laser = {};        ///< that gives no light; set before a scan
-  std::optional<CameraLens> other_lens = {};         ///< that differs from the configured one
+  std::optional<CameraLens> other_lens = {};         ///< that differs from the told one
   std::optional<Eigen::Isometry3d> other_pose = {};  ///< the same of the camera's pose
   double left_turn = 0;  ///< radians that the left laser was turned in its holder, untold
 

@@ -20,11 +20,10 @@ constexpr double step = 2 * std::numbers::pi / 800;
 
 /// The angles that a move reports, in steps: one every 10 ms.
 std::vector<double> steps_told(int position, const Motion& motion) {
-  std::vector<double> configured;
-  SimulatedTurntable turntable([&](double angle) { configured.push_back(angle / step); }, 1,
-                               motion);
+  std::vector<double> told;
+  SimulatedTurntable turntable([&](double angle) { told.push_back(angle / step); }, 1, motion);
   EXPECT_TRUE(turntable.move_to(position, {}));
-  return configured;
+  return told;
 }
 
 TEST(SimulatedTurntable, TurnsToWholeStepsOfATurnOf800) {
@@ -45,29 +44,29 @@ TEST(SimulatedTurntable, TurnsToWholeStepsOfATurnOf800) {
 TEST(SimulatedTurntable, TellsItsAngleAllTheWay) {
   Motion motion = quick_motion;
   motion.settle_time = milliseconds(0);
-  const auto configured = steps_told(200, motion);
+  const auto told = steps_told(200, motion);
 
   // From 200 to 800 steps/s at 2000 steps/s^2 and back: 100 steps in 0.2317 s, twice.
-  ASSERT_EQ(configured.size(), 48U);  // 47 during the move's 0.4633 s, and one at its end
-  for (std::size_t i = 1; i < configured.size(); ++i) {
-    EXPECT_GE(configured[i], configured[i - 1]);
-    EXPECT_NEAR(configured[i], std::round(configured[i]), 1e-9);
+  ASSERT_EQ(told.size(), 48U);  // 47 during the move's 0.4633 s, and one at its end
+  for (std::size_t i = 1; i < told.size(); ++i) {
+    EXPECT_GE(told[i], told[i - 1]);
+    EXPECT_NEAR(told[i], std::round(told[i]), 1e-9);
   }
 }
 
 TEST(SimulatedTurntable, GainsAndLosesSpeedEvenly) {
   // 100 steps at 400 steps/s^2: the first half accelerates to 200 steps/s in 0.5 s, the second half
   // decelerates to rest.
-  const auto configured = steps_told(100, {.start_steps_per_second = 0,
-                                           .top_steps_per_second = 1000,
-                                           .ramp_steps_per_second2 = 400,
-                                           .settle_time = milliseconds(0)});
+  const auto told = steps_told(100, {.start_steps_per_second = 0,
+                                     .top_steps_per_second = 1000,
+                                     .ramp_steps_per_second2 = 400,
+                                     .settle_time = milliseconds(0)});
 
-  ASSERT_GE(configured.size(), 100U);
+  ASSERT_GE(told.size(), 100U);
   for (int i = 0; i < 99; ++i) {
     const double t = 0.01 * (i + 1);
     const double there = t < 0.5 ? 200 * t * t : 100 - 200 * (1 - t) * (1 - t);
-    const double steps = configured[static_cast<std::size_t>(i)];
+    const double steps = told[static_cast<std::size_t>(i)];
     EXPECT_LE(steps, there + 1e-6) << t;
     EXPECT_GT(steps, there - 1 - 1e-6) << t;  // whole steps
   }

@@ -13,12 +13,12 @@ class StatusNewsTest : public AppTest {
   /// Calls `news` until it returns some.
   static std::vector<News> wait_for_news(StatusNews& news) {
     const auto deadline = std::chrono::steady_clock::now() + patience;
-    std::vector<News> configured = news();
-    while (configured.empty() && std::chrono::steady_clock::now() < deadline) {
+    std::vector<News> told = news();
+    while (told.empty() && std::chrono::steady_clock::now() < deadline) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      configured = news();
+      told = news();
     }
-    return configured;
+    return told;
   }
 
   static std::string data_of(const std::vector<News>& news, std::string_view kind) {

@@ -125,9 +125,9 @@ struct Bench {
   };
 
   RigOptions options() {
-    LaserSettings configured;
-    configured.lens = {.width = width, .height = height};
-    return {.speed = 1000, .laser = configured, .open_camera = [this](const LaserSettings&) {
+    LaserSettings told;
+    told.lens = {.width = width, .height = height};
+    return {.speed = 1000, .laser = told, .open_camera = [this](const LaserSettings&) {
               return CameraAndLasers{
                   .camera = std::make_unique<BenchCamera>(*this),
                   .set_line = [this](std::size_t laser, bool on) {

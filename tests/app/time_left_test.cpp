@@ -33,7 +33,7 @@ struct Course {
 /// Simulates a scan and asks for an estimate ten times a stop.
 /// @param tell  called with the true and the estimated remaining seconds and the snapshots so far
 void follow(const Course& course, const ScanEstimate& before,
-            const std::function<void(double truth, double configured, int snapshots)>& tell) {
+            const std::function<void(double truth, double told, int snapshots)>& tell) {
   std::vector<double> ends;
   double total = 0;
   for (int stop = 0; stop <= course.stops; ++stop) {  // including the last look
@@ -62,15 +62,15 @@ void follow(const Course& course, const ScanEstimate& before,
 /// the truth, and that it never rises by more than a tenth.
 void expect_honest(const Course& course, const ScanEstimate& before) {
   double last = -1;
-  follow(course, before, [&](double truth, double configured, int snapshots) {
+  follow(course, before, [&](double truth, double told, int snapshots) {
     if (snapshots >= 3) {
-      ASSERT_GE(configured, 0);
-      EXPECT_NEAR(configured, truth, 0.25 * truth + 0.5) << snapshots << " snapshots";
+      ASSERT_GE(told, 0);
+      EXPECT_NEAR(told, truth, 0.25 * truth + 0.5) << snapshots << " snapshots";
     }
     if (last >= 0) {
-      EXPECT_LE(configured, 1.1 * last + 1e-9) << snapshots << " snapshots";
+      EXPECT_LE(told, 1.1 * last + 1e-9) << snapshots << " snapshots";
     }
-    last = configured;
+    last = told;
   });
 }
 
@@ -86,8 +86,8 @@ TEST(TimeLeft, IsHonestOnARigThatIsFastOneAsLifeAndOneWithASlowDisk) {
 TEST(TimeLeft, IsToldFromTheThirdStopOnWhereNothingWasMeasuredBefore) {
   const Course first{.stop = [](int stop) { return stop == 0 ? 4.0 : 1.0; }, .build = 2};
   const ScanEstimate guessed{.stop = 10s, .build = 2s};
-  follow(first, guessed, [&](double, double configured, int snapshots) {
-    EXPECT_EQ(configured < 0, snapshots < 3) << snapshots;
+  follow(first, guessed, [&](double, double told, int snapshots) {
+    EXPECT_EQ(told < 0, snapshots < 3) << snapshots;
   });
   expect_honest(first, guessed);
 }

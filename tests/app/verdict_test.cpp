@@ -25,7 +25,7 @@ constexpr int stops = 8;
 /// The frames of all stops, with half a real sensor's noise, as four averaged frames have.
 using Seen = std::array<DepthFrame, stops>;
 
-/// @param misalignment  deviation from the configured pose, as a multiple of 5 mm and 1 degree
+/// @param misalignment  deviation from the told pose, as a multiple of 5 mm and 1 degree
 Seen seen(std::vector<AlignedBox3d> boxes, double misalignment = 0) {
   // The simulator centres the bounding box of all boxes on the axis; two specks, too small for a
   // pixel, keep that box in place.

@@ -88,16 +88,16 @@ bool is_ours(int file) {
 /// Whether this call must fail; sets errno then.
 template <typename Place>
 bool fails(Call call, Place place) {
-  Faults* const configured = faults();
-  if (configured == nullptr || (configured->calls & call) == 0 || !is_ours(place)) {
+  Faults* const told = faults();
+  if (told == nullptr || (told->calls & call) == 0 || !is_ours(place)) {
     return false;
   }
-  const std::uint64_t number = ++configured->seen;
-  if (number < configured->first || number - configured->first >= configured->count) {
+  const std::uint64_t number = ++told->seen;
+  if (number < told->first || number - told->first >= told->count) {
     return false;
   }
-  ++configured->failed;
-  errno = static_cast<int>(configured->error);
+  ++told->failed;
+  errno = static_cast<int>(told->error);
   return true;
 }
 

@@ -19,11 +19,11 @@ using nlohmann::json;
 
 class CalibrateCommand : public ::testing::Test {
  protected:
-  /// Stores a rendered turn as a scan. @param configured  its configured pose, which may be wrong
-  void write_turn(const CalibrationTurn& turn, const Eigen::Isometry3d& configured) const {
+  /// Stores a rendered turn as a scan. @param told  its configured pose, which may be wrong
+  void write_turn(const CalibrationTurn& turn, const Eigen::Isometry3d& told) const {
     Scan scan{.sensor_name = "test",
               .intrinsics = turn.intrinsics,
-              .platform_from_sensor = configured,
+              .platform_from_sensor = told,
               .clip = {.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}}};
     for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
       scan.shots.push_back({.file = shot_file(static_cast<int>(stop)), .angle = turn.angles[stop]});

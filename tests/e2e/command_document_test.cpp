@@ -92,7 +92,7 @@ TEST(CommandDocument, AndTheOthersNameEachOption) {
   }
 }
 
-// The default method is configured once by each: a model of the same folder is the same by either.
+// The default method is told once by each: a model of the same folder is the same by either.
 TEST(CommandDocument, TellsTheDefaultMethodOfTheHelp) {
   EXPECT_NE(help_of({"reconstruct"}).find("(solid; of a space: intersection)"), std::string::npos);
   EXPECT_NE(content_of(OCTURN_SOURCE "/docs/commands.md")

@@ -106,10 +106,10 @@ TEST_F(MergeCommand, TakesTheCandidateOrThePairsThatAPersonTells) {
   const fs::path one = write_solved_turn("a", laid_turn(figure(), few_stops));
   const fs::path other =
       write_solved_turn("b", laid_turn(figure(), few_stops, turned_over(figure_height)));
-  const auto run = [&](std::vector<std::string> configured) {
+  const auto run = [&](std::vector<std::string> told) {
     std::vector<std::string> arguments{
         octurn_program(), "merge", one.string(), other.string(), "-o", merged_.string(), "--json"};
-    arguments.insert(arguments.end(), configured.begin(), configured.end());
+    arguments.insert(arguments.end(), told.begin(), told.end());
     return Program(arguments);
   };
   Program best = run({"--candidate", "0"});
@@ -131,9 +131,9 @@ TEST_F(MergeCommand, TakesTheCandidateOrThePairsThatAPersonTells) {
   }
   Program by_pairs = run(pairs);
   ASSERT_EQ(by_pairs.wait(), 0) << by_pairs.errors();
-  const json configured = json::parse(by_pairs.output());
+  const json told = json::parse(by_pairs.output());
   for (std::size_t row = 0; row < 3; ++row) {
-    EXPECT_NEAR(configured["poses"][1]["object_from_platform"][row][3],
+    EXPECT_NEAR(told["poses"][1]["object_from_platform"][row][3],
                 report["poses"][1]["object_from_platform"][row][3], 1e-4);
   }
 

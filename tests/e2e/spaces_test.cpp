@@ -60,11 +60,11 @@ TEST_F(Spaces, ARecordingInTumsLayoutIsImportedAndBuilt) {
                                   "16", "-o", in("wall.stl"), "--json",
                                   method == std::string("solid") ? "--threads" : "--threshold-m2",
                                   method == std::string("solid") ? "1" : "0.01"});
-    const json configured = json::parse(line);
-    EXPECT_TRUE(configured["watertight"]) << line;
-    EXPECT_GT(configured["triangles"], 100) << line;
-    EXPECT_EQ(configured.contains("shell_thickness_mm"), method == std::string("solid"));
-    EXPECT_TRUE(configured["settings"]["clip_mm"].is_null()) << "it has no clip box: " << line;
+    const json told = json::parse(line);
+    EXPECT_TRUE(told["watertight"]) << line;
+    EXPECT_GT(told["triangles"], 100) << line;
+    EXPECT_EQ(told.contains("shell_thickness_mm"), method == std::string("solid"));
+    EXPECT_TRUE(told["settings"]["clip_mm"].is_null()) << "it has no clip box: " << line;
   }
 }
 

@@ -41,8 +41,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   });
   while (input.size() >= 2) {
-    const std::size_t configured = input[0] | std::size_t{input[1]} << 8U;
-    const std::size_t bytes = std::min(configured, input.size() - 2);
+    const std::size_t told = input[0] | std::size_t{input[1]} << 8U;
+    const std::size_t bytes = std::min(told, input.size() - 2);
     frames.take(input.subspan(2, bytes), {});
     input = input.subspan(2 + bytes);
   }

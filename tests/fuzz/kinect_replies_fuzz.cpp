@@ -33,13 +33,13 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                  if (input.empty()) {
                                    throw Gone();
                                  }
-                                 const std::uint8_t configured = input[0];
+                                 const std::uint8_t told = input[0];
                                  input = input.subspan(1);
-                                 if (configured == 255) {
+                                 if (told == 255) {
                                    return -1;
                                  }
-                                 const std::size_t bytes = std::min(
-                                     {std::size_t{2} * configured, input.size(), reply.size()});
+                                 const std::size_t bytes =
+                                     std::min({std::size_t{2} * told, input.size(), reply.size()});
                                  std::ranges::copy(input.first(bytes), reply.begin());
                                  input = input.subspan(bytes);
                                  if (bytes > 6) {

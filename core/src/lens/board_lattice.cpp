@@ -100,9 +100,9 @@ class Growth {
   void step(Lattice& lattice, std::size_t from, std::size_t to, const Vector2i& axis) {
     Place next = *places_[from];
     const Vector2d along = way(from, to);
-    Vector2d& configured = axis.x() == 1 ? next.columns : next.rows;
-    const double direction = configured.dot(along) < 0 ? -1 : 1;
-    configured = direction * along;
+    Vector2d& step = axis.x() == 1 ? next.columns : next.rows;
+    const double direction = step.dot(along) < 0 ? -1 : 1;
+    step = direction * along;
     const double sine = cross(next.columns, next.rows) / (next.columns.norm() * next.rows.norm());
     if (sine >= min_sine) {
       place(lattice, to, next.square + static_cast<int>(direction) * axis, next);

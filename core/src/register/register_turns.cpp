@@ -143,9 +143,9 @@ Answer search(const Target& target, const SeenTurn& turn, int threads,
 }
 
 /// Refines the pose that a person estimated.
-Answer refine_told(const Target& target, const SeenTurn& turn, const Isometry3d& configured,
-                   int threads, const std::stop_token& stop) {
-  const PoseCandidate candidate = refine_candidate(target, turn, configured);
+Answer refine_given(const Target& target, const SeenTurn& turn, const Isometry3d& given,
+                    int threads, const std::stop_token& stop) {
+  const PoseCandidate candidate = refine_candidate(target, turn, given);
   Answer answer{.reason = refuse(candidate)};
   if (answer.reason.empty()) {
     answer.pose = refined(target, turn, candidate, find_middle(turn.points), threads, stop);
@@ -153,14 +153,13 @@ Answer refine_told(const Target& target, const SeenTurn& turn, const Isometry3d&
   return answer;
 }
 
-Answer place(const Target& target, const SeenTurn& turn,
-             const std::optional<Isometry3d>& configured, int threads,
-             const std::stop_token& stop) {
+Answer place(const Target& target, const SeenTurn& turn, const std::optional<Isometry3d>& given,
+             int threads, const std::stop_token& stop) {
   if (turn.points.size() < min_points) {
     return {.pose = {}, .reason = "too little of an object is seen"};
   }
-  return configured ? refine_told(target, turn, *configured, threads, stop)
-                    : search(target, turn, threads, stop);
+  return given ? refine_given(target, turn, *given, threads, stop)
+               : search(target, turn, threads, stop);
 }
 
 /// Turns that are placed already.

@@ -29,16 +29,16 @@ const ReconstructOptions& checked(const ReconstructOptions& options) {
 
 TileHeader make_header(const ReconstructOptions& options, const TilePlan& plan, std::size_t number,
                        std::size_t bricks) {
-  ReconstructOptions configured{.method = options.method,
-                                .leaf_size = TileLattice(options).leaf_side(),
-                                .root_size = options.root_size,
-                                .clip = options.clip};
+  ReconstructOptions reported{.method = options.method,
+                              .leaf_size = TileLattice(options).leaf_side(),
+                              .root_size = options.root_size,
+                              .clip = options.clip};
   if (options.method == Method::solid) {
-    configured.target_error = options.target_error;
+    reported.target_error = options.target_error;
   } else {
-    configured.threshold = options.threshold;
+    reported.threshold = options.threshold;
   }
-  return {.options = configured,
+  return {.options = reported,
           .plan = compute_checksum(plan),
           .tiles = plan.tiles.size(),
           .number = number,

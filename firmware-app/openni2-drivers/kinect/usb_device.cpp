@@ -152,8 +152,8 @@ void UsbDevice::begin_stream(std::uint8_t endpoint,
   }
   on_packet_ = std::move(on_packet);
   ends_ = false;
-  const int configured = libusb_get_max_iso_packet_size(libusb_get_device(handle_.get()), endpoint);
-  const int packet_bytes = configured > 0 ? configured : nominal_packet_bytes;
+  const int reported = libusb_get_max_iso_packet_size(libusb_get_device(handle_.get()), endpoint);
+  const int packet_bytes = reported > 0 ? reported : nominal_packet_bytes;
   transfers_.clear();
   for (std::size_t i = 0; i < transfers_in_flight; ++i) {
     Transfer& made = transfers_.emplace_back();

@@ -257,14 +257,13 @@ class LibcameraCamera final : public Camera {
   /// Drivers tell when a row's exposure begins or when it ends: the earlier is counted, so that no
   /// picture is taken for one of a laser that was switched on in its middle.
   steady_clock::time_point begin_of(libcamera::Request& request) const {
-    const auto configured = request.metadata().get(libcamera::controls::SensorTimestamp);
+    const auto stamp = request.metadata().get(libcamera::controls::SensorTimestamp);
     const auto exposed = request.metadata().get(libcamera::controls::ExposureTime);
     const std::chrono::microseconds exposure =
         exposed ? std::chrono::microseconds(*exposed) : settings_.exposure;
     const std::int64_t at =
-        configured
-            ? *configured
-            : static_cast<std::int64_t>(request.buffers().begin()->second->metadata().timestamp);
+        stamp ? *stamp
+              : static_cast<std::int64_t>(request.buffers().begin()->second->metadata().timestamp);
     return from_boot_time(at) - exposure;
   }
 

@@ -72,10 +72,10 @@ void Rig::use_pose(const Eigen::Isometry3d& platform_from_sensor,
                    const std::vector<Laser>& lasers) {
   options_.laser->platform_from_sensor = platform_from_sensor;
   for (LaserLine* const line : {&options_.laser->left, &options_.laser->right}) {
-    const auto configured = std::ranges::find(lasers, line->laser.name, &Laser::name);
-    if (configured != lasers.end()) {
-      line->laser.normal = configured->normal;
-      line->laser.distance = configured->distance;
+    const auto given = std::ranges::find(lasers, line->laser.name, &Laser::name);
+    if (given != lasers.end()) {
+      line->laser.normal = given->normal;
+      line->laser.distance = given->distance;
     }
   }
 }

@@ -105,9 +105,9 @@ Eigen::Isometry3d pose_from(const std::vector<double>& coordinates) {
 /// Registers the turns. The arguments may give an estimate of the last turn's pose.
 Registration register_as_told(std::vector<StoredTurn>& turns, const MergeArguments& arguments,
                               int threads, const std::stop_token& stop) {
-  auto& configured = turns.back().prior_object_from_platform;
+  auto& prior = turns.back().prior_object_from_platform;
   if (!arguments.pairs.empty()) {
-    configured = pose_from(arguments.pairs);
+    prior = pose_from(arguments.pairs);
   }
   Registration registration = register_turns(turns, threads, stop);
   if (!arguments.candidate) {
@@ -121,7 +121,7 @@ Registration register_as_told(std::vector<StoredTurn>& turns, const MergeArgumen
                 "--json lists them; 0 is the first.");
   }
   const std::vector<RegistrationCandidate> candidates = std::move(registration.candidates);
-  configured = candidates[static_cast<std::size_t>(*arguments.candidate)].object_from_platform;
+  prior = candidates[static_cast<std::size_t>(*arguments.candidate)].object_from_platform;
   registration = register_turns(turns, threads, stop);
   registration.candidates = candidates;
   return registration;

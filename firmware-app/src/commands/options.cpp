@@ -68,15 +68,14 @@ const CLI::Option* add_mesh_option(CLI::App& command, const std::string& name, R
 
 /// Options of every simulated rig.
 std::vector<const CLI::Option*> add_simulation_options(CLI::App& command, RigArguments& rig) {
-  return {
-      command
-          .add_option("--simulate-speed", rig.speed,
-                      "how much faster than life the simulated rig is")
-          ->type_name("FACTOR")
-          ->check(CLI::Range(0.1, 1000.0)),
-      command.add_flag("--simulate-perfect", rig.perfect,
-                       "the simulated rig stands where it is configured to, and its sensor has no "
-                       "error of its own but noise")};
+  return {command
+              .add_option("--simulate-speed", rig.speed,
+                          "how much faster than life the simulated rig is")
+              ->type_name("FACTOR")
+              ->check(CLI::Range(0.1, 1000.0)),
+          command.add_flag("--simulate-perfect", rig.perfect,
+                           "the simulated rig stands where the settings say, and its sensor has no "
+                           "error of its own but noise")};
 }
 
 /// Options of a simulated rig with a depth sensor.

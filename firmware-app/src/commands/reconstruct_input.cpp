@@ -96,9 +96,9 @@ ReconstructInput read_input(const ReconstructArguments& arguments, const std::st
     expect_no_input(arguments.output, arguments.folder);
     expect_writable(arguments.output);
   }
-  Scan configured = read_scan_of(arguments);
-  ReconstructInput input{.settings = settings_from(arguments.settings, configured)};
-  PosedScan posed = with_pose(std::move(configured), arguments.folder, input.settings, stop);
+  Scan stored = read_scan_of(arguments);
+  ReconstructInput input{.settings = settings_from(arguments.settings, stored)};
+  PosedScan posed = with_pose(std::move(stored), arguments.folder, input.settings, stop);
   input.scan = std::move(posed.scan);
   input.findings = std::move(posed.findings);
   input.options = options_from(input.settings, input.scan);

@@ -85,25 +85,25 @@ void hand_over_model(const std::filesystem::path& from, const std::filesystem::p
 }
 
 /// Checks that the scan is in the store.
-const std::string& known_id(const std::string& configured, const ScanStore& store) {
-  if (!store.find(configured)) {
+const std::string& known_id(const std::string& given, const ScanStore& store) {
+  if (!store.find(given)) {
     const std::string scans = (store.data() / "scans").string();
-    throw Error(ErrorCode::no_such_scan, configured + ": is no scan in " + scans,
+    throw Error(ErrorCode::no_such_scan, given + ": is no scan in " + scans,
                 "ls " + scans + " lists them.");
   }
-  return configured;
+  return given;
 }
 
 /// Converts the folder of a scan in the store to the scan's id; an id stays as it is.
-std::string to_id(const std::string& configured, const ScanStore& store) {
-  if (store.find(configured) || !std::filesystem::is_directory(configured)) {
-    return known_id(configured, store);
+std::string to_id(const std::string& given, const ScanStore& store) {
+  if (store.find(given) || !std::filesystem::is_directory(given)) {
+    return known_id(given, store);
   }
-  const auto folder = std::filesystem::canonical(configured);
+  const auto folder = std::filesystem::canonical(given);
   std::string id = folder.filename();
   if (!store.find(id) || std::filesystem::canonical(store.folder(id)) != folder) {
     throw Error(ErrorCode::no_such_scan,
-                configured + ": is no scan in " + store.data().string() +
+                given + ": is no scan in " + store.data().string() +
                     ", and the model of both poses is kept with a scan there",
                 "Scan the object as it lies now without --pose-of, and join the two folders with "
                 "octurn merge.");
@@ -120,15 +120,23 @@ ScanSettings pose_settings(const ScanArguments& arguments, const Job& first,
   return settings;
 }
 
-/// Starts or resumes the scan. @param settings  for a scan that is neither resumed nor of a pose
-std::optional<Job> begin(const ScanArguments& arguments, const ScanSettings& settings,
-                         const ScanStore& store, Scanner& scanner) {
+/// The scan that the arguments resume, or that they add a pose to; empty for a new one.
+std::string earlier_scan(const ScanArguments& arguments, const ScanStore& store) {
+  return arguments.resume    ? known_id(*arguments.resume, store)
+         : arguments.pose_of ? to_id(*arguments.pose_of, store)
+                             : std::string();
+}
+
+/// Starts or resumes the scan.
+/// @param earlier   as `earlier_scan` says
+/// @param settings  for a scan that is neither resumed nor of a pose
+std::optional<Job> begin(const ScanArguments& arguments, const std::string& earlier,
+                         const ScanSettings& settings, const ScanStore& store, Scanner& scanner) {
   if (arguments.resume) {
-    return scanner.resume(*arguments.resume);
+    return scanner.resume(earlier);
   }
   if (arguments.pose_of) {
-    const std::string first = to_id(*arguments.pose_of, store);
-    return scanner.start_pose(first, pose_settings(arguments, store.get(first), scanner));
+    return scanner.start_pose(earlier, pose_settings(arguments, store.get(earlier), scanner));
   }
   return scanner.start(scanner.calibration().in_force(settings));
 }
@@ -159,17 +167,13 @@ void scan(const ScanArguments& arguments) {
 
   const SignalStop signal;
   ScanStore store(config.data);
-  if (arguments.resume) {  // before the devices are opened
-    known_id(*arguments.resume, store);
-  } else if (arguments.pose_of) {
-    to_id(*arguments.pose_of, store);
-  }
+  const std::string earlier = earlier_scan(arguments, store);  // before the devices are opened
   return_freed_memory();
   Scanner scanner(rig, config.limits, store);
 
   scanner.expect_ready();  // a missing device would leave an empty scan folder
   const std::optional<Job> started =
-      begin(arguments, settings, store, scanner);  // has a value: no other scan runs
+      begin(arguments, earlier, settings, store, scanner);  // has a value: no other scan runs
   const Job job = follow(scanner, *started, signal.token());
   if (job.state != JobState::finished) {
     explain(job, store.folder(job.id));

@@ -224,8 +224,8 @@ std::optional<CalibrationFinding> finding(const CalibrationReport& report,
   return found == report.findings.end() ? std::nullopt : std::optional(*found);
 }
 
-/// The sensor of the rendered turns, as configured with other optics. @param ratio  true focal
-/// length over the configured one
+/// The sensor of the rendered turns, as told with other optics. @param ratio  true focal length
+/// over the told one
 Intrinsics told_lens(double ratio, double cx = 320, double cy = 240) {
   return {.fx = Intrinsics().fx / ratio, .fy = Intrinsics().fy / ratio, .cx = cx, .cy = cy};
 }
@@ -303,7 +303,7 @@ TEST(Calibrate, TellsAFocalLengthThatNoKinectHas) {
   const Parameters& values = wrong->parameters;
   ASSERT_EQ(values.size(), 3U);
   EXPECT_DOUBLE_EQ(std::get<double>(values.at("told_px")), turn.intrinsics.fx);
-  // The prior, of 1.5 %, pulls it towards the configured one.
+  // The prior, of 1.5 %, pulls it towards the told one.
   EXPECT_NEAR(std::get<double>(values.at("seen_px")), Intrinsics().fx, 0.02 * Intrinsics().fx);
 }
 

@@ -19,11 +19,9 @@ constexpr double error_mm = 0.3;  // three sigma of the readings' noise, for a 1
 constexpr double error_deg = 0.4;
 
 Snapshot first_look(const Shape& object,
-                    const Eigen::Isometry3d& configured = true_platform_from_sensor()) {
+                    const Eigen::Isometry3d& told = true_platform_from_sensor()) {
   std::mt19937 random(1);
-  return {.frame = rendered_frame(object, 0, random),
-          .intrinsics = {},
-          .object_from_sensor = configured};
+  return {.frame = rendered_frame(object, 0, random), .intrinsics = {}, .object_from_sensor = told};
 }
 
 DepthFrame last_look(const Shape& object, double angle = 0) {

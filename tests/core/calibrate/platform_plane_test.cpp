@@ -91,16 +91,15 @@ TEST(PlatformPlane, IsNotFoundWhereNothingIsRead) {
 TEST(Level, PutsThePlaneAtZeroByTheLeastRotation) {
   const auto plane = fit_platform_plane(sampled(bare_platform, 2), true_platform_from_sensor());
   ASSERT_TRUE(plane);
-  const Eigen::Isometry3d configured = wrong_pose({0.01, 0.02, -0.01}, {1, 1, 0}, 3);
+  const Eigen::Isometry3d told = wrong_pose({0.01, 0.02, -0.01}, {1, 1, 0}, 3);
 
-  const Eigen::Isometry3d levelled = level(configured, *plane);
+  const Eigen::Isometry3d levelled = level(told, *plane);
 
   const Vector3d up = levelled.linear() * plane->normal;
   EXPECT_NEAR(up.z(), 1, 1e-12);
   EXPECT_NEAR((levelled * (plane->normal * plane->offset)).z(), 0, 1e-12);
-  const Eigen::AngleAxisd turn(levelled.linear() * configured.linear().transpose());
-  EXPECT_NEAR(degrees_from_radians(turn.angle()), 3,
-              0.001);  // the plane is configured 3 degrees off
+  const Eigen::AngleAxisd turn(levelled.linear() * told.linear().transpose());
+  EXPECT_NEAR(degrees_from_radians(turn.angle()), 3, 0.001);  // the plane is told 3 degrees off
   EXPECT_NEAR(turn.axis().z(), 0, 1e-9);
 }
 

@@ -58,7 +58,7 @@ void add_common_error(DepthFrame& frame, unsigned seed) {
 
 // A small object gives the axis to half a millimetre only. While the solver iterates, many readings
 // move by a pixel, so the last step stays larger than for a well-determined axis. By chance the
-// stops may agree better in the configured pose, although both poses are equally likely.
+// stops may agree better in the told pose, although both poses are equally likely.
 TEST(CalibrateSmallObject, ConfirmsARigThatIsRight) {
   const CalibrationTurn clean = rendered_turn(small_figure(), 8);
   for (const unsigned seed : {0U, 3U, 9U, 35U, 51U}) {

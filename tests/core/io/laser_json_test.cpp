@@ -74,7 +74,7 @@ TEST(LaserJson, MakesModelsWithThePlanesThatWereSolved) {
 
   const std::vector<Laser> lasers = model_lasers(*scan.laser, scan.solved);
 
-  EXPECT_DOUBLE_EQ(lasers[0].distance, -0.14);  // as configured: nothing solved
+  EXPECT_DOUBLE_EQ(lasers[0].distance, -0.14);  // as told: nothing solved
   EXPECT_TRUE(lasers[0].source);
   EXPECT_DOUBLE_EQ(lasers[1].distance, 0.15);
   EXPECT_LT((lasers[1].normal - Eigen::Vector3d(0.6, 0, 0.8)).norm(), 1e-12);

@@ -25,8 +25,8 @@ class Turn {
   }
 
   const Scan& truth() const { return truth_; }
-  LaserCalibration solve(const Scan& configured, int threads = 1) const {
-    return calibrate_lasers(folder_.path(), configured, threads);
+  LaserCalibration solve(const Scan& told, int threads = 1) const {
+    return calibrate_lasers(folder_.path(), told, threads);
   }
 
  private:
@@ -74,17 +74,17 @@ TEST(CalibrateLasers, LeavesWhatIsRightAsItIs) {
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_LT(distance_at_object(found.lasers[i], truth.laser->lasers[i]), tenth_of_a_pixel);
   }
-  EXPECT_LT(found.report.shift, 2e-4);  // metres, the sigma of a configured pose
+  EXPECT_LT(found.report.shift, 2e-4);  // metres, the sigma of a told pose
 }
 
 TEST(CalibrateLasers, FindsPlanesThatWereTurnedInTheirHolders) {
   const Scan& truth = Turn::of_two_balls().truth();
-  Scan configured = truth;
-  configured.laser->lasers[0] = turned(truth.laser->lasers[0], -0.1);
-  configured.laser->lasers[1] = turned(truth.laser->lasers[1], 0.1);
-  ASSERT_GT(distance_at_object(configured.laser->lasers[0], truth.laser->lasers[0]), 4e-4);
+  Scan told = truth;
+  told.laser->lasers[0] = turned(truth.laser->lasers[0], -0.1);
+  told.laser->lasers[1] = turned(truth.laser->lasers[1], 0.1);
+  ASSERT_GT(distance_at_object(told.laser->lasers[0], truth.laser->lasers[0]), 4e-4);
 
-  const LaserCalibration found = Turn::of_two_balls().solve(configured);
+  const LaserCalibration found = Turn::of_two_balls().solve(told);
 
   ASSERT_TRUE(found.report.accepted) << found.report.reason;
   EXPECT_TRUE(found.moved_a_plane);
@@ -96,13 +96,13 @@ TEST(CalibrateLasers, FindsPlanesThatWereTurnedInTheirHolders) {
 
 TEST(CalibrateLasers, FindsAPoseThatWasToldWrong) {
   const Scan& truth = Turn::of_two_balls().truth();
-  Scan configured = truth;
-  configured.platform_from_sensor =
+  Scan told = truth;
+  told.platform_from_sensor =
       Eigen::Translation3d(0.003, -0.002, 0.004) *
       Eigen::AngleAxisd(radians_from_degrees(0.7), Eigen::Vector3d::UnitX()) *
       truth.platform_from_sensor;
 
-  const LaserCalibration found = Turn::of_two_balls().solve(configured);
+  const LaserCalibration found = Turn::of_two_balls().solve(told);
 
   ASSERT_TRUE(found.report.accepted) << found.report.reason;
   const Eigen::Isometry3d left =
@@ -115,10 +115,10 @@ TEST(CalibrateLasers, FindsAPoseThatWasToldWrong) {
 
 TEST(CalibrateLasers, FindsThePlanesByThePlatformAlone) {
   const Turn empty(LitScene{});
-  Scan configured = empty.truth();
-  configured.laser->lasers[0] = turned(empty.truth().laser->lasers[0], 0.05);
+  Scan told = empty.truth();
+  told.laser->lasers[0] = turned(empty.truth().laser->lasers[0], 0.05);
 
-  const LaserCalibration found = empty.solve(configured);
+  const LaserCalibration found = empty.solve(told);
 
   ASSERT_TRUE(found.report.accepted) << found.report.reason;
   for (std::size_t i = 0; i < 2; ++i) {
@@ -154,11 +154,11 @@ TEST(CalibrateLasers, ReadsAtMostAHundredStops) {
 
 TEST(CalibrateLasers, IsTheSameForAnyThreads) {
   const Scan& truth = Turn::of_two_balls().truth();
-  Scan configured = truth;
-  configured.laser->lasers[0] = turned(truth.laser->lasers[0], 0.08);
+  Scan told = truth;
+  told.laser->lasers[0] = turned(truth.laser->lasers[0], 0.08);
 
-  const LaserCalibration alone = Turn::of_two_balls().solve(configured, 1);
-  const LaserCalibration several = Turn::of_two_balls().solve(configured, 3);
+  const LaserCalibration alone = Turn::of_two_balls().solve(told, 1);
+  const LaserCalibration several = Turn::of_two_balls().solve(told, 3);
 
   EXPECT_EQ(alone.report.platform_from_sensor.matrix(),
             several.report.platform_from_sensor.matrix());

@@ -54,11 +54,10 @@ TEST(CompareRivals, AreOneWhereTheReadingsJoinThem) {
 // With a wrong sensor pose, the fits of two neighbours end 2 degrees and 1.6 mm apart, each
 // uncertain by 1.1 degrees and 1.4 mm. They count as one pose, and not as a symmetry.
 TEST(CompareRivals, AreOneWhereTheyDifferByNoMoreThanTheirUncertainty) {
-  const Rivals configured =
-      rivals(misaligned(upright(3)), misaligned(over(3)), 7, Vector3d::UnitY());
+  const Rivals told = rivals(misaligned(upright(3)), misaligned(over(3)), 7, Vector3d::UnitY());
 
-  EXPECT_EQ(configured.reason, "");
-  EXPECT_FALSE(configured.symmetric);
+  EXPECT_EQ(told.reason, "");
+  EXPECT_FALSE(told.symmetric);
 }
 
 TEST(CompareRivals, AreToldWhereTheyGiveAnotherShape) {

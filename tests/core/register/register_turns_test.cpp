@@ -247,15 +247,14 @@ TEST(RegisterTurns, RefusesToGuessWhereADentIs) {
   }
   // A person who knows the object chooses one; the other candidates must not refuse it.
   turns[1].prior_object_from_platform = found.candidates[2].object_from_platform;
-  const Registration configured = register_turns(turns);
-  ASSERT_TRUE(configured.accepted) << configured.reason;
-  expect_near(configured.poses[1].object_from_platform, found.candidates[2].object_from_platform, 1,
-              1);
-  EXPECT_TRUE(configured.candidates.empty());
+  const Registration told = register_turns(turns);
+  ASSERT_TRUE(told.accepted) << told.reason;
+  expect_near(told.poses[1].object_from_platform, found.candidates[2].object_from_platform, 1, 1);
+  EXPECT_TRUE(told.candidates.empty());
 }
 
-// The configured pose is off by ten degrees, and by 7 mm at the centre, as one from three clicked
-// point pairs may be.
+// The told pose is off by ten degrees, and by 7 mm at the centre, as one from three clicked point
+// pairs may be.
 TEST(RegisterTurns, RefinesAPoseThatIsToldRoughly) {
   const Eigen::Isometry3d truth = turned_over(figure_height);
   std::array turns{laid_turn(figure(), stops), laid_turn(figure(), stops, truth)};

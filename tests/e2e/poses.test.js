@@ -24,7 +24,7 @@ async function clickUntil(page, {x, y, width, height}, part, hasHelped) {
  *     further side's cloud
  */
 async function clicksOfPairs({scan, object_from_platform}) {
-  const [{Matrix4, Vector3}, {besides, cloudOf, lookAt, makeEye, pointAt}] = await Promise.all([import('/three.js'), import('/fit_clouds.js')]);
+  const [{Matrix4, Vector3}, {besides, cloudOf, lookAt, makeEye, pointAt}] = await Promise.all([import('/three.js'), import('/model/fit_clouds.js')]);
   const canvas = document.getElementById('fit-view');
   const {clientWidth: width, clientHeight: height} = canvas;
   const {before_mm, pose_mm} = await (await fetch(`/api/v1/scans/${scan}/poses/1/points`)).json();
@@ -143,7 +143,7 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
   await page.getByRole('button', {name: 'Set three pairs'}).click();
   await text.filter({hasText: /^Pair 1 of 3/}).waitFor();
   // The page is served in bundles, so its single modules come from the source tree.
-  await page.route(/\/(three|fit_clouds)\.js$/, (route) => route.fulfill({
+  await page.route(/\/(three|model\/fit_clouds)\.js$/, (route) => route.fulfill({
     path: fileURLToPath(new URL(`../../web${new URL(route.request().url()).pathname}`, import.meta.url)), contentType: 'text/javascript'}));
   const {drag, pairs} = await page.evaluate(clicksOfPairs, {scan: first.id, object_from_platform});
   const {x: left, y: top, width, height} = await page.locator('#fit-view').boundingBox();

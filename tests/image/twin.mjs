@@ -37,16 +37,19 @@ export class Twin {
   guest;
 
   /** @param {string} card  the folder of the card @param {string} made  with the programs of tests/emulation/twin
-   * @param {(turntable: Turntable) => Promise<Sensor>} makeSensor */
+   * @param {(angle: () => Promise<number>) => Promise<Sensor>} makeSensor  given what tells the platform's angle */
   static async make(card, made, makeSensor) {
     const twin = new Twin();
     twin.#card = card;
     twin.#made = made;
-    twin.sensor = await makeSensor(twin.turntable);
+    twin.sensor = await makeSensor(async () => {
+      await twin.#gpio.refresh();
+      return twin.turntable.angle;
+    });
     twin.#gpio = await GpioObserver.listen((line, level) => {
       twin.turntable.change(line, level);
       twin.sensor.change(line, level);
-    });
+    }, (seconds) => twin.turntable.pass(seconds));
     return twin;
   }
 

@@ -12,9 +12,9 @@ export class GuestKinect extends TwinKinect {
   options = [];
   disk;
 
-  /** @param {string} made  what tests/emulation/twin/make has made @param {import('../emulation/twin/turntable.mjs').Turntable} turntable */
-  static async make(made, turntable) {
-    const kinect = await GuestKinect.listen(() => turntable.angle);
+  /** @param {string} made  what tests/emulation/twin/make has made @param {() => Promise<number>} angle  of the platform */
+  static async make(made, angle) {
+    const kinect = await GuestKinect.listen(angle);
     kinect.disk = `${made}/disk.img`;
     return kinect;
   }

@@ -70,7 +70,7 @@ async function testScan(twin) {
 
 const lens = await toldLens();
 const twin = await Twin.make(card, made,
-  (turntable) => TwinLaserCamera.listen(`${made}/laser_camera`, {...lens, picturesPerSecond}, turntable));
+  (angle) => TwinLaserCamera.listen(`${made}/laser_camera`, {...lens, picturesPerSecond}, angle));
 await runTest('laser twin', () => twin.guest, async () => {
   say(await twin.start());
   await testDoctor(twin);

@@ -47,7 +47,7 @@ async function testBusyScan(twin, model) {
   require(downloads > 0 && twin.turntable.position === position + stepsPerTurn, `the platform is at ${twin.turntable.position}`);
 }
 
-const twin = await Twin.make(card, made, (turntable) => GuestKinect.make(made, turntable));
+const twin = await Twin.make(card, made, (angle) => GuestKinect.make(made, angle));
 await runTest('twin', () => twin.guest, async () => {
   say(await twin.start());
   await twin.sensor.tell(`drop ${loss / 100}`);

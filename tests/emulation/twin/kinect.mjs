@@ -9,7 +9,7 @@ export class TwinKinect {
   #socket;
   #waiting = [];
 
-  /** Waits for the guest's program at a port of this machine's loopback. @param {() => number} angle  of the platform */
+  /** Waits for the guest's program at a port of this machine's loopback. @param {() => Promise<number>} angle  of the platform */
   static async listen(angle) {
     const kinect = new this();
     kinect.#server = createServer((socket) => kinect.#welcome(socket, angle)).listen(0, '127.0.0.1');
@@ -66,8 +66,7 @@ export class TwinKinect {
     });
     createInterface({input: socket}).on('line', (line) => {
       if (line === 'look') {
-        // Pulses of before have come by another socket, and are read first: twice, since this may be the first half of a turn.
-        setImmediate(() => setImmediate(() => socket.write(`angle ${angle()}\n`)));
+        angle().then((radians) => socket.write(`angle ${radians}\n`));
       } else {
         this.#waiting.shift()(line);
       }

@@ -3,20 +3,11 @@
 
 import {spawn} from 'node:child_process';
 import {once} from 'node:events';
-import {promisify} from 'node:util';
 
 import {UvcCamera} from '../camera/uvc_camera.mjs';
 import {LaserLines} from './laser_lines.mjs';
 
 const patience = 3600;  // seconds: the guest's own clock is what it waits by
-
-const soon = promisify(setImmediate);
-
-/** Has what QEMU has told of its lines be read: by another socket, twice, since this may be the first half of a turn. */
-async function lineChangesAreRead() {
-  await soon();
-  await soon();
-}
 
 /** The program that renders. */
 class Renderer {
@@ -57,7 +48,7 @@ class Renderer {
 }
 
 export class TwinLaserCamera {
-  #turntable;
+  #angle;
   #renderer;
   #camera;
 
@@ -66,10 +57,13 @@ export class TwinLaserCamera {
   /** How many pictures showed which laser. */
   pictures = {none: 0, left: 0, right: 0};
 
-  /** @param {string} program  laser_camera @param {object} lens  of the camera @param {import('./turntable.mjs').Turntable} turntable */
-  static async listen(program, lens, turntable) {
+  /**
+   * @param {string} program  laser_camera @param {object} lens  of the camera
+   * @param {() => Promise<number>} angle  of the platform, once earlier changes of lines have been told
+   */
+  static async listen(program, lens, angle) {
     const twin = new TwinLaserCamera();
-    twin.#turntable = turntable;
+    twin.#angle = angle;
     twin.#renderer = new Renderer(program, lens);
     twin.#camera = await UvcCamera.listen({...lens, speed: 'full'}, () => twin.#look());
     return twin;
@@ -108,10 +102,10 @@ export class TwinLaserCamera {
    * from when it comes. */
   async #look() {
     for (;;) {
-      await lineChangesAreRead();
+      const angle = await this.#angle();
       const {lit} = this.lasers;
-      const picture = await this.#renderer.render(this.#turntable.angle, lit);
-      await lineChangesAreRead();
+      const picture = await this.#renderer.render(angle, lit);
+      await this.#angle();
       if (lit === this.lasers.lit) {
         ++this.pictures[lit];
         return picture;

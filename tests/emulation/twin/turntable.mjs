@@ -58,9 +58,7 @@ export class Turntable {
   #lossPeriod = Infinity;
   #isAtHome = false;  // whether the driver is at its home position, since power-up
   #actions = new Map();
-  #platform = null;
-  #now;
-  #time;
+  #platform;
 
   /** The platform's position, microsteps, counter-clockwise. */
   position = 0;
@@ -74,16 +72,9 @@ export class Turntable {
   /** Whether the driver's ENABLE is disconnected, so that its pull-up keeps the motor off. */
   isEnableStuck = false;
 
-  /**
-   * @param {{load?: typeof documentedLoad | null, now?: () => number}} options load: the platform's inertia, and what moves it; null: it
-   * follows each pulse at once. An emulated Pi makes its pulses by a clock that runs unevenly, which costs such a platform steps. now: seconds
-   */
-  constructor({load = null, now = () => performance.now() / 1000} = {}) {
-    this.#now = now;
-    this.#time = now();
-    if (load) {
-      this.#platform = new LoadedPlatform(load, 0);
-    }
+  /** @param {typeof documentedLoad | null} load  the platform's inertia, and what moves it; null: it follows each pulse at once */
+  constructor(load = documentedLoad) {
+    this.#platform = load && new LoadedPlatform(load, 0);
   }
 
   get isOn() {
@@ -92,7 +83,6 @@ export class Turntable {
 
   /** Radians, counter-clockwise seen from above. */
   get angle() {
-    this.#pass();
     return this.#platform?.angle ?? this.#field;
   }
 
@@ -100,11 +90,9 @@ export class Turntable {
     return 2 * Math.PI * this.position / stepsPerTurn;
   }
 
-  /** Lets the time pass for the platform that has gone by. */
-  #pass() {
-    const time = this.#now();
-    this.#platform?.advance(time - this.#time, this.isOn ? this.#field : null);
-    this.#time = time;
+  /** Lets time pass. @param {number} seconds */
+  pass(seconds) {
+    this.#platform?.advance(seconds, this.isOn ? this.#field : null);
   }
 
   /** The angle if no step had been lost, radians. */
@@ -136,7 +124,6 @@ export class Turntable {
 
   /** Handles the change of a GPIO line. @param {number} line @param {0 | 1} level */
   change(line, level) {
-    this.#pass();
     const rises = level === 1 && this.#levels[line] === 0;
     this.#levels[line] = level;
     if (this.isOn && this.#isAtHome) {
@@ -161,17 +148,25 @@ const set = registers + 0x1c;
 const functions = (line) => registers + 4 * Math.floor(line / 10);
 const output = (line) => 1 << (3 * (line % 10));
 
+/** The chip's free running counter of microseconds, its lower half (12.1). It goes by the guest's clock. */
+const counter = 0x3f003004;
+const refreshInterval = 5;  // ms
+
 /**
- * Observes the chip's GPIO lines by QEMU's qtest protocol, which reports each change of an output. In QEMU a line that becomes an
- * input keeps its level, although a resistor would pull it.
+ * Observes the chip's GPIO lines by QEMU's qtest protocol, which reports each change of an output, and its clock. In QEMU a line that
+ * becomes an input keeps its level, although a resistor would pull it.
  */
 export class GpioObserver {
   #server;
   #socket;
+  #pass;
+  #ticks;         // of the counter, when it was read last
+  #answered = [];  // what waits for the answers to come, in order
 
-  /** @param {(line: number, level: 0 | 1) => void} change */
-  static async listen(change) {
+  /** @param {(line: number, level: 0 | 1) => void} change @param {(seconds: number) => void} pass  told of the guest's time */
+  static async listen(change, pass = () => {}) {
     const observer = new GpioObserver();
+    observer.#pass = pass;
     observer.#server = createServer((socket) => observer.#watch(socket, change)).listen(0, '127.0.0.1');
     await once(observer.#server, 'listening');
     return observer;
@@ -184,7 +179,14 @@ export class GpioObserver {
 
   /** Writes a register like the chip's processor. */
   write(register, value) {
-    this.#socket.write(`writel 0x${register.toString(16)} 0x${value.toString(16)}\n`);
+    this.#ask(`writel 0x${register.toString(16)} 0x${value.toString(16)}`);
+  }
+
+  /** Reads the guest's clock. All that the guest did before has then been reported. */
+  async refresh() {
+    if (this.#socket) {
+      await new Promise((come) => this.#readClock(come));
+    }
   }
 
   async close() {
@@ -193,16 +195,42 @@ export class GpioObserver {
     await once(this.#server, 'close');
   }
 
+  #ask(command, answered = () => {}) {
+    this.#answered.push(answered);
+    this.#socket.write(`${command}\n`);
+  }
+
+  #readClock(then) {
+    this.#ask(`readl 0x${counter.toString(16)}`, (text) => {
+      if (text) {
+        const ticks = Number(text);
+        this.#pass((ticks - (this.#ticks ?? ticks) >>> 0) / 1e6);
+        this.#ticks = ticks;
+      }
+      then();
+    });
+  }
+
   #watch(socket, change) {
     this.#socket = socket;
-    socket.on('error', () => {});  // QEMU is killed when power is cut
-    createInterface({input: socket}).on('line', (text) => {
+    this.#ticks = undefined;  // each guest's clock begins anew
+    const timer = setInterval(() => this.#readClock(() => {}), refreshInterval);
+    const reports = createInterface({input: socket});
+    [socket, reports].forEach((stream) => stream.on('error', () => {}));  // QEMU is killed when power is cut
+    socket.on('close', () => {
+      clearInterval(timer);
+      this.#socket = undefined;
+      this.#answered.splice(0).forEach((answered) => answered(''));  // QEMU has ended
+    });
+    reports.on('line', (text) => {
       const [, level, line] = /^IRQ (raise|lower) ([0-9]+)$/.exec(text) ?? [];
       if (level) {
-        change(Number(line), level === 'raise' ? 1 : 0);
+        this.#readClock(() => change(Number(line), level === 'raise' ? 1 : 0));
+      } else {
+        this.#answered.shift()?.(text.replace(/^OK ?/, ''));
       }
     });
-    socket.write(`irq_intercept_out ${block}\n`);
+    this.#ask(`irq_intercept_out ${block}`);
     // On a Pi, GPIO0 to 8 are pulled up at boot, ENABLE among them. QEMU's chip has no resistors, so it is driven high here.
     this.write(functions(lines.enable), output(lines.enable));
     this.write(set, 1 << lines.enable);

@@ -18,7 +18,7 @@ const pulse = (turntable) => {
 const steps = (turntable, count) => Array.from({length: count}).forEach(() => pulse(turntable));
 
 test('the platform turns by a microstep with each rising edge, in the direction of DIR', () => {
-  const turntable = new Turntable();
+  const turntable = new Turntable(null);
   turntable.change(enable, 0);
   turntable.change(direction, 1);
   steps(turntable, 200);
@@ -30,7 +30,7 @@ test('the platform turns by a microstep with each rising edge, in the direction 
 });
 
 test('it stands while ENABLE is high, as it is until somebody drives it, and while it is stuck', () => {
-  const turntable = new Turntable();
+  const turntable = new Turntable(null);
   turntable.change(direction, 1);
   steps(turntable, 5);
   assert.equal(turntable.position, 0);
@@ -44,7 +44,7 @@ test('it stands while ENABLE is high, as it is until somebody drives it, and whi
 });
 
 test('the motor misses the pulses that it is told to', () => {
-  const turntable = new Turntable();
+  const turntable = new Turntable(null);
   turntable.change(enable, 0);
   turntable.change(direction, 1);
   turntable.lose(3, 10);
@@ -55,7 +55,7 @@ test('the motor misses the pulses that it is told to', () => {
 });
 
 test('it knows where it was told to be, and where it is', () => {
-  const turntable = new Turntable();
+  const turntable = new Turntable(null);
   turntable.change(enable, 0);
   turntable.change(direction, 1);
   turntable.lose(20);
@@ -68,7 +68,7 @@ test('it knows where it was told to be, and where it is', () => {
 });
 
 test('a weak motor misses a share of the pulses', () => {
-  const turntable = new Turntable();
+  const turntable = new Turntable(null);
   turntable.change(enable, 0);
   turntable.change(direction, 1);
   turntable.loseEach(25);
@@ -80,7 +80,7 @@ test('a weak motor misses a share of the pulses', () => {
 });
 
 test('after a cut of power the lines are undriven, and the motor jumps to where its driver begins once it is on', () => {
-  const turntable = new Turntable();
+  const turntable = new Turntable(null);
   turntable.change(enable, 0);
   turntable.change(direction, 1);
   steps(turntable, 99);
@@ -100,7 +100,7 @@ test('after a cut of power the lines are undriven, and the motor jumps to where 
 });
 
 test('something happens with a pulse, after the platform has made its step', () => {
-  const turntable = new Turntable();
+  const turntable = new Turntable(null);
   turntable.change(enable, 0);
   turntable.change(direction, 1);
   let seen;
@@ -132,7 +132,7 @@ test('QEMU tells each change of the lines that are outputs', async () => {
     observer.write(functions2, 1 << 21);  // and GPIO27
     observer.write(set, 1 << direction);
     observer.write(set, 1 << step);
-    await until(5);
+    await observer.refresh();
     assert.deepEqual(changes, [[enable, 1], [step, 1], [step, 0], [direction, 1], [step, 1]]);
   } finally {
     qemu.kill('SIGKILL');
@@ -142,24 +142,23 @@ test('QEMU tells each change of the lines that are outputs', async () => {
 });
 
 /** Makes the pulses of a move at the angles' pace: from and to `start` steps a second, `ramp` steps a second gained each second. */
-const turnBy = (turntable, clock, {start, top, ramp}, steps) => {
+const turnBy = (turntable, {start, top, ramp}, steps) => {
   turntable.change(5, 0);
   turntable.change(27, 1);
   let speed = start;
   for (let left = steps; left > 0; --left) {
     speed = Math.min(Math.sqrt(speed ** 2 + 2 * ramp), top, Math.sqrt(start ** 2 + 2 * ramp * left));
-    clock.time += 1 / speed;
+    turntable.pass(1 / speed);
     turntable.change(17, 1);
     turntable.change(17, 0);
   }
-  clock.time += 3;
+  turntable.pass(3);
 };
 
 test('a platform with inertia follows gentle speeds, and loses a period by quick ones', () => {
   const moved = (speeds) => {
-    const clock = {time: 0};
-    const turntable = new Turntable({load: documentedLoad, now: () => clock.time});
-    turnBy(turntable, clock, speeds, 22);
+    const turntable = new Turntable();
+    turnBy(turntable, speeds, 22);
     return turntable.angle * 180 / Math.PI;
   };
   assert.ok(Math.abs(moved({start: 40, top: 200, ramp: 150}) - 9.9) < 0.2);
@@ -168,11 +167,10 @@ test('a platform with inertia follows gentle speeds, and loses a period by quick
 });
 
 test('a heavy platform swings after its last pulse', () => {
-  const clock = {time: 0};
-  const turntable = new Turntable({load: {...documentedLoad, friction: 0}, now: () => clock.time});
-  turnBy(turntable, clock, {start: 40, top: 200, ramp: 150}, 4);
+  const turntable = new Turntable({...documentedLoad, friction: 0});
+  turnBy(turntable, {start: 40, top: 200, ramp: 150}, 4);
   const angles = Array.from({length: 30}, () => {
-    clock.time += 0.01;
+    turntable.pass(0.01);
     return turntable.angle;
   });
   assert.ok(Math.max(...angles) - Math.min(...angles) > 0.001);

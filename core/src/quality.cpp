@@ -82,7 +82,7 @@ void judge_findings(Judgement& judgement, std::span<const CalibrationFinding> fi
                                     .hint = finding.hint,
                                     .parameters = finding.parameters});
     } else if (finding.code == "slip" || finding.code == "turn-not-whole" ||
-               finding.code == "still") {
+               finding.code == "still" || finding.code == "stops-disagree") {
       judgement.add(finding.code == "still" ? Verdict::bad : Verdict::look,
                     {.code = "stops-disagree",
                      .detail = finding.detail,

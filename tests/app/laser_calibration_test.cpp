@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "app/scanner_fixture.hpp"
@@ -83,6 +85,19 @@ TEST_F(LaserCalibrationOfARig, FindsATurnedLaserWithATurnAndTellsItTheNextScan) 
   EXPECT_EQ(scanned.laser->lasers[0].distance, left.distance);
   EXPECT_EQ(scanned.platform_from_sensor.matrix(), kept.platform_from_sensor.matrix());
   EXPECT_TRUE(scanned.laser->lasers[0].source);
+}
+
+TEST_F(LaserCalibrationOfARig, SaysThatTheLasersDisagreeWhereAWeakMotorLostSteps) {
+  RigOptions weak = rig_.options(speed);
+  weak.load = PlatformLoad{.holding_torque = 0.05, .inertia = 0.013};
+  Scanner scanner(std::move(weak), {}, store_);
+  scan(scanner, settings(24));
+  const Job job = *scanner.status().job;
+  EXPECT_FALSE(job.calibration->accepted);
+  ASSERT_FALSE(job.model->quality->reasons.empty());
+  const QualityReason& first = job.model->quality->reasons.front();
+  EXPECT_EQ(first.code, "stops-disagree");
+  EXPECT_NE(first.detail.find("the motor lost steps"), std::string::npos);
 }
 
 TEST_F(LaserCalibrationOfARig, RemembersAcrossAStartWhatAScanHasSolved) {

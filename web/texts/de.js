@@ -324,6 +324,7 @@ export const texts = {
   'reason.slip.off_deg.stop': 'An Halt {stop} stand der Teller {off_deg} neben seiner Stelle.',
   'reason.still.stops': 'Alle {stops} Halte zeigen dasselbe Bild: Der Teller hat sich nicht gedreht.',
   'reason.stops-disagree.disagreement_mm': 'Zwei Halte sind sich über das Objekt um {disagreement_mm} uneins.',
+  'reason.stops-disagree.lasers_mm': 'Zwei Laser sind sich über das Objekt um {lasers_mm} uneins: Der Motor hat Schritte verloren, oder Objekt, Kamera oder ein Laser hat sich bewegt.',
   'reason.sunk.platform_below_mm': 'Der Teller ist {platform_below_mm} tiefer zu sehen, als er sein sollte, und ebenso viel fehlt vom Objekt.',
   'reason.turn-not-whole.turn_deg': 'Eine ganze Umdrehung ergab {turn_deg}.',
   'reason.wobble.wobble_deg': 'Die Oberfläche des Tellers neigt sich beim Drehen um {wobble_deg}.',

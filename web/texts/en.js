@@ -335,6 +335,7 @@ export const texts = {
   'reason.slip.off_deg.stop': 'At stop {stop} the platform stood {off_deg} from where it should.',
   'reason.still.stops': 'Each of {stops} stops shows what the first one shows: the platform did not turn.',
   'reason.stops-disagree.disagreement_mm': 'Two stops disagree about the object by {disagreement_mm}.',
+  'reason.stops-disagree.lasers_mm': 'Two lasers disagree about the object by {lasers_mm}: the motor lost steps, or the object, the camera or a laser moved.',
   'reason.sunk.platform_below_mm': 'The platform is seen {platform_below_mm} below where it should be, and as much of the object is missing.',
   'reason.turn-not-whole.turn_deg': 'A whole turn came out as {turn_deg}.',
   'reason.wobble.wobble_deg': 'The platform’s surface tilts by {wobble_deg} as it turns.',

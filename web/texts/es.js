@@ -324,6 +324,7 @@ export const texts = {
   'reason.slip.off_deg.stop': 'En la parada {stop} el plato estaba a {off_deg} de su sitio.',
   'reason.still.stops': 'Las {stops} paradas muestran la misma imagen: el plato no ha girado.',
   'reason.stops-disagree.disagreement_mm': 'Dos paradas discrepan sobre el objeto en {disagreement_mm}.',
+  'reason.stops-disagree.lasers_mm': 'Dos láseres discrepan sobre el objeto en {lasers_mm}: el motor perdió pasos, o se movió el objeto, la cámara o un láser.',
   'reason.sunk.platform_below_mm': 'El plato se ve {platform_below_mm} por debajo de su sitio, y otro tanto falta del objeto.',
   'reason.turn-not-whole.turn_deg': 'Una vuelta entera resultó de {turn_deg}.',
   'reason.wobble.wobble_deg': 'La superficie del plato se inclina {wobble_deg} al girar.',

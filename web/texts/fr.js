@@ -324,6 +324,7 @@ export const texts = {
   'reason.slip.off_deg.stop': 'À l’arrêt {stop} le plateau était à {off_deg} de sa place.',
   'reason.still.stops': 'Les {stops} arrêts montrent tous la même image : le plateau n’a pas tourné.',
   'reason.stops-disagree.disagreement_mm': 'Deux arrêts diffèrent sur l’objet de {disagreement_mm}.',
+  'reason.stops-disagree.lasers_mm': 'Deux lasers diffèrent sur l’objet de {lasers_mm} : le moteur a perdu des pas, ou l’objet, la caméra ou un laser a bougé.',
   'reason.sunk.platform_below_mm': 'Le plateau est vu {platform_below_mm} sous sa place, et autant manque à l’objet.',
   'reason.turn-not-whole.turn_deg': 'Un tour entier a donné {turn_deg}.',
   'reason.wobble.wobble_deg': 'La surface du plateau s’incline de {wobble_deg} en tournant.',

@@ -125,6 +125,23 @@ bool moved_a_plane(const std::vector<Laser>& configured, const std::vector<Laser
   return false;
 }
 
+/// Two lasers see other surfaces of an object: what a turntable that lost steps looks like, too.
+CalibrationFinding describe_disagreement(double between_lasers) {
+  return {
+      .code = "stops-disagree",
+      .detail = "two lasers disagree about the object by " + mm_text(between_lasers, 2) +
+                ": the motor lost steps, or the object, the camera or a laser moved",
+      .hint = "Look whether object, camera and lasers stand firm. If they do, turn more slowly.",
+      .stop = {},
+      .angle = {},
+      .parameters = {{"lasers_mm", mm_from_metres(between_lasers)}}};
+}
+
+bool lasers_disagree(const RigSolution& solution) {
+  return solution.surface_distances.size() >= min_pairs &&
+         disagreement(solution) > max_disagreement;
+}
+
 /// Returns why a solution is refused; empty if it is accepted.
 std::string refusal(const RigSolution& solution, const CalibrationReport& report,
                     const std::vector<Laser>& configured) {
@@ -132,9 +149,8 @@ std::string refusal(const RigSolution& solution, const CalibrationReport& report
     return "the lines on the platform are " + mm_text(median(solution.platform_heights), 2) +
            " from flat";
   }
-  if (solution.surface_distances.size() >= min_pairs && disagreement(solution) > max_disagreement) {
-    return "two lasers disagree about the object by " + mm_text(disagreement(solution), 2) +
-           ": the object or a laser moved";
+  if (lasers_disagree(solution)) {
+    return describe_disagreement(disagreement(solution)).detail;
   }
   if (report.after > report.before) {
     return "the configured pose and planes fit better than the solved ones";
@@ -192,6 +208,9 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   report.platform_from_sensor = best.rig.platform_from_sensor;
   compare_poses(configured.platform_from_sensor, report);
   set_sigmas(best, report);
+  if (lasers_disagree(best)) {
+    report.findings.push_back(describe_disagreement(disagreement(best)));
+  }
   report.reason = refusal(best, report, configured.lasers);
   report.accepted = report.reason.empty();
   calibration.lasers = best.rig.lasers;

@@ -1,5 +1,6 @@
 #include "commands/options.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 
@@ -75,7 +76,17 @@ std::vector<const CLI::Option*> add_simulation_options(CLI::App& command, RigArg
               ->check(CLI::Range(0.1, 1000.0)),
           command.add_flag("--simulate-perfect", rig.perfect,
                            "the simulated rig stands where the settings say, and its sensor has no "
-                           "error of its own but noise")};
+                           "error of its own but noise"),
+          command
+              .add_option("--simulate-torque", rig.load.holding_torque,
+                          "holding torque of the simulated motor, N m (0.2)")
+              ->type_name("NM")
+              ->check(CLI::Range(0.01, 10.0)),
+          command
+              .add_option("--simulate-inertia", rig.load.inertia,
+                          "of the simulated platform about its axis, kg m^2 (0.005)")
+              ->type_name("KGM2")
+              ->check(CLI::Range(0.0001, 0.1))};
 }
 
 /// Options of a simulated rig with a depth sensor.
@@ -97,17 +108,7 @@ std::vector<const CLI::Option*> add_depth_simulation_options(CLI::App& command, 
       command
           .add_option("--simulate-play", rig.play_deg, "play of the simulated gears, degrees (0)")
           ->type_name("DEGREES")
-          ->check(CLI::Range(0.0, 10.0)),
-      command
-          .add_option("--simulate-torque", rig.load.holding_torque,
-                      "holding torque of the simulated motor, N m (0.2)")
-          ->type_name("NM")
-          ->check(CLI::Range(0.01, 10.0)),
-      command
-          .add_option("--simulate-inertia", rig.load.inertia,
-                      "of the simulated platform about its axis, kg m^2 (0.005)")
-          ->type_name("KGM2")
-          ->check(CLI::Range(0.0001, 0.1))};
+          ->check(CLI::Range(0.0, 10.0))};
 }
 
 /// Options of a simulated rig with a camera and lasers.

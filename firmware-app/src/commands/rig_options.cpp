@@ -75,6 +75,13 @@ Motion to_simulated_motion(const StepperSettings& configured) {
   return to_motion(simulated);
 }
 
+/// What a simulated turntable turns; nothing if it has no weight.
+std::optional<PlatformLoad> load_of(const RigArguments& arguments) {
+  // A recording shows what was seen at an angle, and not at one that a heavy platform swings to.
+  const bool has_weight = !arguments.perfect && arguments.sensor_uri.empty();
+  return has_weight ? std::optional(arguments.load) : std::nullopt;
+}
+
 RigOptions laser_rig_options(const RigArguments& arguments, const Config& config) {
   if (!arguments.simulate) {
     return {.stepper = config.turntable, .laser = config.laser};
@@ -82,6 +89,7 @@ RigOptions laser_rig_options(const RigArguments& arguments, const Config& config
   return {
       .speed = arguments.speed,
       .motion = to_simulated_motion(config.turntable),
+      .load = load_of(arguments),
       .laser = config.laser,
       .open_camera = [simulation = to_simulation(arguments, config.laser), speed = arguments.speed](
                          const LaserSettings&) { return simulate_laser_rig(simulation, speed); }};
@@ -102,12 +110,10 @@ RigOptions rig_options(const RigArguments& arguments, const Config& config) {
                                                 .misalignment = imperfection,
                                                 .wall = arguments.wall,
                                                 .speed = arguments.speed});
-  // A recording shows what was seen at an angle, and not at one that a heavy platform swings to.
-  const bool has_weight = !arguments.perfect && arguments.sensor_uri.empty();
   return {.sensor_uri = arguments.sensor_uri.empty() ? simulated : arguments.sensor_uri,
           .speed = arguments.speed,
           .motion = to_simulated_motion(config.turntable),
-          .load = has_weight ? std::optional(arguments.load) : std::nullopt,
+          .load = load_of(arguments),
           .open_sensor = sensor_opener(to_mechanism(arguments, config.turntable))};
 }
 

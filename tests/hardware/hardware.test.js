@@ -30,6 +30,7 @@ const bearing = {bore: 8, outer: 22, width: 7, innerRing: 12.1, outerRing: 19};
 const nema17 = {side: 42.3, screws: 31, boss: 22, shaft: 24, length: 40};
 const m3 = {diameter: 3, head: 5.5, headHeight: 3};
 const raspberryPi = {screws: [58, 49], hole: 2.7};
+const foam = 2; // of the tape in the list of parts
 const printer = [200, 200, 180]; // what nearly every printer's bed takes
 
 for (const file of readdirSync(made).filter((name) => name.endsWith('.stl'))) {
@@ -155,8 +156,8 @@ for (const model of ['1414', '1473', '1517']) {
   test(`a Kinect ${model} drops into its bracket, and rests on the braces`, () => {
     const bracket = part(`kinect_bracket_${model}`);
     const {boards, kinect_models: models, kinect_feet: feet, kinect_plate: plate, head_above_foot: above, kinect_head: head,
-      sensor_pitch: pitch, kinect_pad: pad} =
-        values('boards', 'kinect_models', 'kinect_feet', 'kinect_plate', 'head_above_foot', 'kinect_head', 'sensor_pitch', 'kinect_pad');
+      sensor_pitch: pitch} =
+        values('boards', 'kinect_models', 'kinect_feet', 'kinect_plate', 'head_above_foot', 'kinect_head', 'sensor_pitch');
     const foot = feet[models.indexOf(model)];
     const fence = section(bracket, plate + 4).flat();
     const inner = (axis) => Math.min(...fence.filter((point) => Math.abs(point[1 - axis]) < foot[1 - axis] / 2 - 1)
@@ -168,8 +169,8 @@ for (const model of ['1414', '1473', '1517']) {
     const [sin, cos] = [Math.sin(pitch * Math.PI / 180), Math.cos(pitch * Math.PI / 180)];
     const below = (point) => -(point[0] * -sin + (point[2] - plate - above) * cos) - head[2] / 2;
     const gaps = bracket.flat().map(below);
-    near(Math.min(...gaps), pad, 0.01, 'foam between head and braces');
-    const touching = bracket.filter((corners) => corners.every((corner) => below(corner) < pad + 0.01)).flat();
+    near(Math.min(...gaps), foam, 0.01, 'foam between head and braces');
+    const touching = bracket.filter((corners) => corners.every((corner) => below(corner) < foam + 0.01)).flat();
     assert.ok(Math.max(...touching.map((corner) => corner[1])) > 80 && Math.min(...touching.map((corner) => corner[1])) < -80);
 
     const middle = [130 / 2, 299 / 2];

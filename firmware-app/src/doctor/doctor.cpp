@@ -1,5 +1,6 @@
 #include "doctor/doctor.hpp"
 
+#include <optional>
 #include <system_error>
 #include <utility>
 
@@ -74,15 +75,19 @@ Eigen::Isometry3d unscaled_pose(const ScanSettings& settings) {
 std::vector<Finding> check_machine(const DoctorInput& input) {
   const auto& root = input.root;
   const std::uint64_t largest = max_scan_bytes(input.config.scan);
-  return {check_data_folder(input.config.data),
-          check_settings(stored_trouble(input)),
-          check_disk(free_bytes_in(input.config.data),
-                     {.largest = largest, .usual = input.usual_scan_bytes.value_or(largest)}),
-          check_memory(root, input.config.limits.memory_bytes),
-          check_temperature(root),
-          check_supply(root),
-          check_throttling(root),
-          check_clock(root, std::chrono::system_clock::now(), is_clock_synchronised(root))};
+  std::vector<Finding> findings{
+      check_data_folder(input.config.data), check_settings(stored_trouble(input)),
+      check_disk(free_bytes_in(input.config.data),
+                 {.largest = largest, .usual = input.usual_scan_bytes.value_or(largest)}),
+      check_memory(root, input.config.limits.memory_bytes), check_temperature(root)};
+  for (const std::optional<Finding>& told : {check_supply(root), check_throttling(root)}) {
+    if (told) {
+      findings.push_back(*told);
+    }
+  }
+  findings.push_back(
+      check_clock(root, std::chrono::system_clock::now(), is_clock_synchronised(root)));
+  return findings;
 }
 
 }  // namespace

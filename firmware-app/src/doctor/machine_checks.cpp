@@ -144,13 +144,13 @@ Finding check_temperature(const fs::path& root) {
              : temperature.ok(measured);
 }
 
-Finding check_supply(const fs::path& root) {
+std::optional<Finding> check_supply(const fs::path& root) {
   constexpr const char* advice =
       "Use the power supply made for this Raspberry Pi, with a short, thick cable.";
   const std::optional<Throttled> flags = throttled(root);
   const std::optional<bool> alarm = voltage_alarm(root);
   if (!flags && !alarm) {
-    return supply.unknown(not_known);
+    return std::nullopt;
   }
   if (alarm.value_or(false) || (flags && flags->now(Throttled::under_voltage))) {
     return supply.fault("below 4.63 V", advice);
@@ -160,11 +160,11 @@ Finding check_supply(const fs::path& root) {
              : supply.ok("above 4.63 V");
 }
 
-Finding check_throttling(const fs::path& root) {
+std::optional<Finding> check_throttling(const fs::path& root) {
   constexpr const char* advice = "Give the computer a stronger supply and better cooling.";
   const std::optional<Throttled> flags = throttled(root);
   if (!flags) {
-    return throttling.unknown(not_known);
+    return std::nullopt;
   }
   return flags->now(Throttled::slowed)      ? throttling.warning("slowed down", advice)
          : flags->before(Throttled::slowed) ? throttling.warning("it has been slowed down", advice)

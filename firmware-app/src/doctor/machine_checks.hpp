@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include "doctor/finding.hpp"
@@ -32,11 +33,13 @@ Finding check_memory(const std::filesystem::path& root, std::size_t limit);
 /// Whether the processor is cool enough to keep its clock.
 Finding check_temperature(const std::filesystem::path& root);
 
-/// Whether a Raspberry Pi's supply voltage has stayed above 4.63 V.
-Finding check_supply(const std::filesystem::path& root);
+/// Whether a Raspberry Pi's supply voltage has stayed above 4.63 V. Nothing where the kernel does
+/// not tell: Raspberry Pi's own does, Debian's has no driver for it.
+std::optional<Finding> check_supply(const std::filesystem::path& root);
 
-/// Whether a Raspberry Pi's firmware has lowered the clock of the processor.
-Finding check_throttling(const std::filesystem::path& root);
+/// Whether a Raspberry Pi's firmware has lowered the clock of the processor. Nothing where the
+/// kernel does not tell.
+std::optional<Finding> check_throttling(const std::filesystem::path& root);
 
 /// Whether the clock is right. A Raspberry Pi has no clock that runs without power.
 /// @param synchronised  as `is_clock_synchronised` says

@@ -22,7 +22,14 @@ test('each verdict has its tone, and is never told by colour alone', () => {
 test('a reason leads to its cure', () => {
   const href = (code) => actionOf(code)?.href ?? null;
   assert.deepEqual(['stops-disagree', 'cut-by-box', 'part-missing', 'little-seen', 'something-new', undefined].map(href),
-      ['#calibrate', '#calibrate', '#calibrate', '#', null, null]);
+      ['#calibrate', '#build-again', '#calibrate', '#', null, null]);
+});
+
+test('what only a build can cure leads to the field of Build again, and the scanner’s hint is not said twice', () => {
+  const hint = 'Build the model of all parts.';
+  const reasons = ['cut-by-box', 'parts-dropped'].map((code) => ({code, detail: code, hint}));
+  const shown = verdictOf(judged('look', reasons)).reasons;
+  assert.deepEqual(shown.map((reason) => [reason.action.field, reason.hint]), [['build-clip', ''], ['build-parts', '']]);
 });
 
 test('a good model of an uneven sensor leads to the wall, and stays good', () => {

@@ -4,7 +4,7 @@ import * as api from './api/api.js';
 import {seeStatus, watchAppliance} from './scanner/appliance.js';
 import * as bin from './scan/bin.js';
 import {watchCamera} from './scan/camera.js';
-import {seeNewest, watchSteps} from './scanner/checklist.js';
+import {seeScans, watchSteps} from './scanner/checklist.js';
 import {element} from './base/dom.js';
 import * as events from './base/events.js';
 import {prepareForm} from './scan/form.js';
@@ -39,7 +39,6 @@ async function look() {
   try {
     const status = events.news(asked) ?? await askForStatus();
     seeStatus(status);
-    seeNewest(status);
     seeWarnings(status);
     bin.seeRevision(status.scans_revision);
     const scans = states.isListStale(states.withStatus(state, status)) ? await api.scans() : null;
@@ -54,6 +53,7 @@ async function look() {
     const news = states.withDefaults(states.withStatus(state, status), defaults, formats);
     const listed = scans ? states.withScans(news, scans) : news;
     change(builds && builds.scan === listed.selected ? states.withBuilds(listed, builds.scan, builds.list) : listed);
+    seeScans(state.scans);
   } catch (error) {
     if (error instanceof api.Problem) {
       change(states.withoutAnswer(state));
@@ -105,6 +105,12 @@ function listen() {
   click('show-camera', () => change(states.withStage(state, 'camera')));
   click('details-rename', () => rename(state.selected));
   element('reasons').addEventListener('click', (/** @type {any} */ event) => {
+    const field = event.target.closest('[data-field]')?.dataset.field;
+    if (field) {
+      event.preventDefault();
+      element('build-again').open = true;
+      element(field).focus();
+    }
     const reason = event.target.closest('.reason-places')?.closest('li').dataset.key;
     if (reason) {
       change(states.withReason(state, reason));

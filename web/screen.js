@@ -22,7 +22,7 @@ const tones = {running: 'busy', paused: 'warn', finished: 'good', cancelled: 'id
 /** @param {Scan} scan */
 export const nameOf = (scan) => scan.name || text('scan.unnamed', {when: format.when(scan.created)});
 
-/** @param {Scan} scan */
+/** @param {Pick<Scan, 'snapshots_done' | 'snapshots_total'>} scan */
 const taken = (scan) => text('count.of', {done: scan.snapshots_done, total: scan.snapshots_total});
 
 /** Why a scan has no model. @param {Scan} scan */
@@ -69,13 +69,29 @@ const motorFacts = ({late_pulses, slips, seconds_settling}) => [
     [{label: text('fact.platform'), text: text('fact.swung', {time: `${format.number(seconds_settling)} s`})}] : []),
 ];
 
-/** @param {Scan} scan @returns {{label: string, text: string, tone?: Tone}[]} */
-function factsOf(scan) {
+/**
+ * The scans of the sides in the model in view, the first side first.
+ * @param {State} state @param {Scan} scan @returns {Scan[]}
+ */
+function sidesOf(state, scan) {
+  const merged = buildShown(state, scan)?.poses ?? [];
+  const others = (scan.poses ?? []).filter(({pose}) => merged.includes(pose)).map((pose) => scanOf(state, pose.scan));
+  return [scan, ...others.filter((side) => side !== null)];
+}
+
+/** @param {Scan} scan  as shown @param {Scan[]} sides @returns {{label: string, text: string, tone?: Tone}[]} */
+function factsOf(scan, sides) {
   const {model, settings} = scan;
   const when = format.when(scan.created);
+  const total = (/** @type {'snapshots_done' | 'snapshots_total' | 'seconds_elapsed'} */ key) =>
+    sides.reduce((sum, side) => sum + side[key], 0);
+  const all = {snapshots_done: total('snapshots_done'), snapshots_total: total('snapshots_total')};
+  const duration = total('seconds_elapsed');
+  const snapshots = text(`fact.${settings.filter}`, {taken: taken(all), frames: settings.frames});
+  const lasted = duration > 0 ? text('fact.took', {when, duration: format.duration(duration)}) : when;
   const capture = [
-    {label: text('fact.snapshots'), text: text(`fact.${settings.filter}`, {taken: taken(scan), frames: settings.frames})},
-    {label: text('fact.taken'), text: scan.seconds_elapsed > 0 ? text('fact.took', {when, duration: format.duration(scan.seconds_elapsed)}) : when},
+    {label: text('fact.snapshots'), text: snapshots},
+    {label: text('fact.taken'), text: lasted},
     ...poseFacts(scan),
     ...motorFacts(scan),
   ];
@@ -149,7 +165,7 @@ const detailsOf = (state, scan) => ({
   trouble: troubleOf(scan),
   verdict: verdictShown(state, scan),
   size: scan.model ? format.size(scan.model.size_mm) : '',
-  facts: factsOf(scan),
+  facts: factsOf(scan, sidesOf(state, scan)),
   canResume: scan.can_resume ?? (scan.state === 'paused' || scan.state === 'interrupted'),
   canEnd: scan.state === 'paused' || scan.state === 'interrupted',
   download: downloadOf(scan),

@@ -67,6 +67,7 @@ function setAction(link, action) {
   show(link, action !== null);
   setText(link, action?.text ?? '');
   link.href = action?.href ?? '';
+  link.dataset.field = action?.field ?? '';
 }
 
 /** @param {NonNullable<Screen['details']>['verdict']} verdict */

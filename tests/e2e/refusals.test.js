@@ -50,7 +50,7 @@ test('settings that make no sense are not sent', async (t) => {
   await page.getByLabel('Widest gap bridged').fill('20');
   const another = await page.context().newPage();
   await another.goto(scanner.url);
-  await another.getByText('Your own choice: 40 snapshots a turn, detail of 2 mm.').waitFor();
+  await another.getByText('Custom: 40 snapshots a turn, detail of 2 mm.').waitFor();
   await another.close();
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();

@@ -41,6 +41,18 @@ test('a scan that went by a told pose and disagrees with it can be straightened'
   assert.ok(!screenOf(looking(finished)).builds.canStraighten);
 });
 
+test('the facts of a model of several sides count the snapshots and the time of all', () => {
+  const side = {...finished, id: 'side', snapshots_done: 12, snapshots_total: 12, seconds_elapsed: 25,
+    pose_of: {scan: 'done', registration: null}};
+  const pose = {pose: 1, scan: 'side', state: 'finished', registration: null};
+  const first = {...askew, seconds_elapsed: 95, poses: [pose]};
+  const both = states.withScans(states.withStatus(states.initial, status), [first, side]);
+  const state = states.withBuilds(states.withSelected(both, 'done'), 'done', [own, {...straight, poses: [1]}]);
+  assert.match(factsOf(states.withShownBuild(state, 1)).Snapshots, /^48 of 48/);
+  assert.match(factsOf(states.withShownBuild(state, 1)).Taken, /2 min/);
+  assert.match(factsOf(states.withShownBuild(state, 0)).Snapshots, /^36 of 36/);
+});
+
 test('a scan is built again once it has ended and has snapshots', () => {
   const canBuild = (changes) => screenOf(looking({...askew, ...changes})).builds.canBuild;
   assert.deepEqual([{}, {state: 'cancelled'}, {state: 'failed'}, {state: 'paused'}, {snapshots_done: 0}].map(canBuild),

@@ -18,6 +18,10 @@ test('the time left never claims more than it knows', () => {
       ['', 'a moment left', 'about 15 s left', 'about 45 s left', 'about 1 min left', 'about 2 min left', 'about 60 min left']);
 });
 
+test('a scan that takes longer than expected is not said to end in a moment', () => {
+  assert.equal(format.timeLeft(0), '');
+});
+
 test('a message becomes a sentence, and nothing stays nothing', () => {
   assert.deepEqual(['no frame', 'Is it on?', ''].map(format.sentence), ['No frame.', 'Is it on?', '']);
 });

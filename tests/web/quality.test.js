@@ -22,7 +22,14 @@ test('each verdict has its tone, and is never told by colour alone', () => {
 test('a reason leads to its cure', () => {
   const href = (code) => actionOf(code)?.href ?? null;
   assert.deepEqual(['stops-disagree', 'cut-by-box', 'part-missing', 'little-seen', 'something-new', undefined].map(href),
-      ['#calibrate', '#calibrate', '#calibrate', '#', null, null]);
+      ['#calibrate', '#build-again', '#calibrate', '#', null, null]);
+});
+
+test('what only a build can cure leads to the field of Build again, and the scanner’s hint is not said twice', () => {
+  const hint = 'Build the model of all parts.';
+  const reasons = ['cut-by-box', 'parts-dropped'].map((code) => ({code, detail: code, hint}));
+  const shown = verdictOf(judged('look', reasons)).reasons;
+  assert.deepEqual(shown.map((reason) => [reason.action.field, reason.hint]), [['build-clip', ''], ['build-parts', '']]);
 });
 
 test('a good model of an uneven sensor leads to the wall, and stays good', () => {
@@ -61,5 +68,6 @@ test('what a calibration found is worded with its values, also where the verdict
   assert.equal(detailOf('stops-disagree', {turn_deg: 270, object_side: 2}), 'Side 2: A whole turn came out as 270.0°.');
   assert.equal(detailOf('focal-length', {shorter_share: 0.021, seen_px: 562.4, told_px: 574}),
       'The sensor’s focal length is 2.1% shorter than configured: 562 pixels instead of 574.');
-  assert.equal(detailOf('no-map', {unevenness_disparity: 0.456}), 'The flat platform looks uneven by 0.46 units of the sensor’s disparity.');
+  assert.equal(detailOf('no-map', {unevenness_disparity: 0.456}),
+      'One look at a bare wall makes models more exact: the flat platform looks uneven by 0.46 steps of disparity.');
 });

@@ -40,6 +40,11 @@ test('the last stop is not the end: the model is still to be built', () => {
   assert.equal(title, 'Building · Octurn');
 });
 
+test('of a scan that is later than expected the time so far is told, and no end', () => {
+  const {left, time} = screenOf(scanning({phase: 'calibrating', snapshots_done: 36, seconds_left: 0})).progress;
+  assert.deepEqual([left, time], ['', '0:12']);
+});
+
 test('after the last snapshot the scanner looks once more at the first stop', () => {
   assert.equal(screenOf(scanning({phase: 'turning', snapshots_done: 36})).progress.text, 'Checking the first stop again');
 });

@@ -1,8 +1,10 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {areEqual, changeOf, complaintOf, helpOf, joined, keyOf, nameOf, poseText, reasonOf, restartText, schemaAt, stepsOf, valueAt, valueText,
-  wordsOf} from '../../web/scanner/settings_form.js';
+import {
+  areEqual, asShown, changeOf, complaintOf, helpOf, joined, keyOf, nameOf, poseText, reasonOf, restartText, schemaAt,
+  stepsOf, valueAt, valueText, wordsOf,
+} from '../../web/scanner/settings_form.js';
 
 test('a setting is found, and a change of it made, by its key', () => {
   assert.equal(valueAt({turntable: {gear_ratio: 4}}, 'turntable.gear_ratio'), 4);
@@ -71,4 +73,15 @@ test('what waits for a restart says for how long', () => {
   assert.equal(restartText([], false), '');
   assert.match(restartText(['port'], false), /starts again/);
   assert.match(restartText(['port'], true), /when the scan has ended/);
+});
+
+test('a square of a length is shown as the length', () => {
+  const square = {type: 'number', description: '', 'x-unit': 'm2', minimum: 1e-8, maximum: 1};
+  const {schema, toShown, toStored} = asShown(square);
+  assert.deepEqual([schema['x-unit'], schema.minimum, schema.maximum], ['mm', 0.1, 1000]);
+  assert.equal(toShown(0.0001), 10);
+  assert.equal(toStored(20), 0.0004);
+  const whole = {type: 'integer', description: '', minimum: 1, maximum: 200};
+  assert.equal(asShown(whole).schema, whole);
+  assert.equal(asShown(whole).toStored(36), 36);
 });

@@ -56,7 +56,7 @@ export function duration(value) {
  * @param {number | null} seconds  null if unknown
  */
 export function timeLeft(seconds) {
-  if (seconds === null) {
+  if (seconds === null || seconds <= 0) {  // not known, or later than expected, and nobody knows by how much
     return '';
   }
   if (seconds < 3) {

@@ -1,35 +1,49 @@
 // The objects of the viewer: a model of clay, and the platform below it.
 
 import {
-  BufferAttribute, BufferGeometry, CircleGeometry, Color, DirectionalLight, DoubleSide, LineBasicMaterial, LineSegments, Mesh, MeshBasicMaterial,
-  MeshStandardMaterial,
+  BufferAttribute, BufferGeometry, CircleGeometry, Color, DirectionalLight, DoubleSide, LightProbe, LineBasicMaterial,
+  LineSegments, Mesh, MeshLambertMaterial, ShaderMaterial,
 } from '../three.js';
+import {toLamp} from './light.js';
 
-const clay = 0xd8d2c4;
+const clay = 0xd9d2c6;
 const edgeColour = new Color(0x0e5a66);
 const filledColour = new Color(0xd9913f);
 export const ringStep = 50;   // millimetres between the platform's rings
 
 /**
- * Clay that can show its triangles, shaded flat where the geometry has no normals. Each triangle has three vertices of its own, in order, so a vertex's index gives its
- * corner. A pixel's distance to the nearest edge comes from interpolated barycentric coordinates, without further buffers.
+ * Clay that can show its triangles, shaded flat where the geometry has no normals. It is matt, which a phone draws faster
+ * than glossy clay. Each triangle has three vertices of its own, in order, so a vertex's index gives its corner. A pixel's
+ * distance to the nearest edge comes from interpolated barycentric coordinates, without further buffers.
  * @param {Object} shown
  * @param {{value: number}} shown.edges  opacity of the edges, 0 to 1
  * @param {{value: number}} shown.filled  opacity of the colour of filled-in surface, 0 to 1
  * @param {{value: number}} shown.painted  1: the corners' colours are shown; 0: clay
  * @param {{value: number}} shown.top  millimetres; higher parts are cut off
- * @param {boolean} shown.isSmooth  whether the geometry has normals
+ * @param {{value: number}} shown.shaded  1: the lamp's shadow on the model is shown, which holds for its first pose alone
+ * @param {boolean} shown.isSmooth  whether the geometry has normals and light
  */
-export function clayMaterial({edges, filled, painted, top, isSmooth}) {
-  const material = new MeshStandardMaterial({color: clay, roughness: 0.78, metalness: 0, flatShading: !isSmooth, side: DoubleSide});
+export function clayMaterial({edges, filled, painted, top, shaded, isSmooth}) {
+  const material = new MeshLambertMaterial({color: clay, flatShading: !isSmooth, side: DoubleSide});
+  material.defines = isSmooth ? {LIT: 1} : {};
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, {
-      edgeStrength: edges, edgeColour: {value: edgeColour}, filledStrength: filled, filledColour: {value: filledColour}, painted, top,
+      edgeStrength: edges, edgeColour: {value: edgeColour}, painted, top, shaded,
+      filledStrength: filled, filledColour: {value: filledColour},
     });
-    shader.vertexShader = `attribute float filled;\nattribute vec3 paint;\nvarying vec3 vPaint;\nvarying float vFilled;\nvarying vec3 vCorner;\nvarying float vHeight;\n${shader.vertexShader}`
+    shader.vertexShader = `attribute float filled;
+attribute vec3 paint;
+attribute vec2 light;
+varying vec2 vLight;
+varying vec3 vPaint;
+varying float vFilled;
+varying vec3 vCorner;
+varying float vHeight;
+${shader.vertexShader}`
         .replace('void main() {', `void main() {
       vFilled = filled;
       vPaint = paint;
+      vLight = light;
       vHeight = (modelMatrix * vec4(position, 1.0)).z;
       int corner = gl_VertexID % 3;
       vCorner = vec3(corner == 0, corner == 1, corner == 2);`);
@@ -43,11 +57,19 @@ uniform float filledStrength;
 uniform vec3 filledColour;
 varying float vHeight;
 uniform float top;
+varying vec2 vLight;
+uniform float shaded;
 ${shader.fragmentShader}`
         .replace('#include <color_fragment>', `#include <color_fragment>
       if (vHeight > top) discard;
       diffuseColor.rgb = mix(diffuseColor.rgb, pow(vPaint, vec3(2.2)), painted);
       diffuseColor.rgb = mix(diffuseColor.rgb, filledColour, vFilled * filledStrength);`)
+        .replace('#include <aomap_fragment>', `
+      #ifdef LIT
+      reflectedLight.indirectDiffuse *= vLight.x * vLight.x * 0.85 + 0.15;
+      reflectedLight.directDiffuse *= mix(1.0, vLight.y, shaded);
+      #endif
+      reflectedLight.indirectDiffuse *= 0.8 + 0.35 * max(normal.z, 0.0);`)
         .replace('#include <opaque_fragment>', `
       vec3 perPixel = fwidth(vCorner);
       vec3 inside = smoothstep(perPixel * 0.4, perPixel * 1.4, vCorner);
@@ -59,16 +81,22 @@ ${shader.fragmentShader}`
   return material;
 }
 
-/** Lights that move with the camera, beside it, so that shapes are visible from every side. @param {any} camera */
-export function lightsBeside(camera) {
-  const key = new DirectionalLight(0xfff6e8, 2.1);
-  key.position.set(-0.5, 0.8, 1);
-  const rim = new DirectionalLight(0x7fe3dd, 1.1);
-  rim.position.set(1, 0.35, -0.8);
-  for (const light of [key, rim]) {
-    light.target = camera;
-    camera.add(light);
-  }
+/** The room's light: from above more than from below, a little more from the lamp's side, cool where it is dim. */
+export function roomLight() {
+  const probe = new LightProbe();
+  const [all, y, z, x] = probe.sh.coefficients;
+  all.set(1.1, 1.17, 1.26);
+  z.set(0.58, 0.57, 0.55);
+  x.set(0.12, 0.15, 0.19);
+  y.set(0.2, 0.22, 0.25);
+  return probe;
+}
+
+/** The lamp, which casts the shadow. */
+export function lampLight() {
+  const lamp = new DirectionalLight(0xfff0dd, 2.2);
+  lamp.position.fromArray(toLamp);
+  return lamp;
 }
 
 /** @param {number} radius @returns {number[]} line segments of rings and two axes on the platform's surface */
@@ -86,13 +114,37 @@ function platformLines(radius) {
   return lines;
 }
 
-/** @param {number} radius  of the drawn platform, millimetres */
-export function platform(radius) {
+/**
+ * The platform: a floor that fades into the dark, with rings and the model's shadow.
+ * @param {number} radius  of its rings, millimetres @param {any} shadow  texture over a square of twice its half side
+ * @param {number} halfSide  millimetres
+ */
+export function platform(radius, shadow, halfSide) {
   const lines = new BufferGeometry();
   lines.setAttribute('position', new BufferAttribute(new Float32Array(platformLines(radius)), 3));
-  const disc = new Mesh(new CircleGeometry(radius, 96),
-      new MeshBasicMaterial({color: 0x5fb8b5, transparent: true, opacity: 0.07, depthWrite: false, side: 2}));
-  const grid = new LineSegments(lines, new LineBasicMaterial({color: 0x7fc4c4, transparent: true, opacity: 0.28}));
-  grid.add(disc);
+  const grid = new LineSegments(lines,
+      new LineBasicMaterial({color: 0xa9c6cc, transparent: true, opacity: 0.2, depthWrite: false}));
+  const floor = new Mesh(new CircleGeometry(2.2 * radius, 96), new ShaderMaterial({
+    transparent: true, depthWrite: false, side: DoubleSide,
+    uniforms: {shadow: {value: shadow}, halfSide: {value: halfSide}, radius: {value: radius}},
+    vertexShader: `varying vec2 vPlace;
+void main() {
+  vPlace = position.xy;
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+}`,
+    fragmentShader: `varying vec2 vPlace;
+uniform sampler2D shadow;
+uniform float halfSide;
+uniform float radius;
+void main() {
+  float dark = texture2D(shadow, 0.5 + 0.5 * vPlace / halfSide).r;
+  float far = length(vPlace) / radius;
+  float lit = exp(-1.1 * far * far);
+  vec3 colour = mix(vec3(0.36, 0.43, 0.47), vec3(0.02, 0.035, 0.045), 0.72 * dark);
+  gl_FragColor = vec4(colour, (gl_FrontFacing ? 0.92 : 0.1) * lit);
+}`,
+  }));
+  floor.renderOrder = -1;
+  grid.add(floor);
   return grid;
 }

@@ -1,16 +1,18 @@
 // The 3D view of a model in millimetres, Z up, on a drawing of the platform.
 
 import {
-  BufferAttribute, BufferGeometry, Group, HemisphereLight, Mesh, OrbitControls, PerspectiveCamera, Scene, Sphere, Vector3,
-  WebGLRenderer,
+  ACESFilmicToneMapping, BufferAttribute, BufferGeometry, Group, Mesh, OrbitControls, PerspectiveCamera, Scene, Sphere,
+  Vector3, WebGLRenderer,
 } from '../three.js';
 import {fitToCanvas, onClick} from '../base/canvas.js';
-import {clayMaterial, lightsBeside, platform, ringStep} from './clay.js';
+import {clayMaterial, lampLight, platform, ringStep, roomLight} from './clay.js';
+import {lightOf} from './light.js';
 import {measureMark} from './measure_mark.js';
 import {smoothNormals} from './normals.js';
 import {placeAt} from './pick.js';
 import {ballOf, placesMark} from './places_mark.js';
 import {restingSide} from './resting_pose.js';
+import {Shadow} from './shadow.js';
 
 /** @typedef {import('./stl.js').Mesh} StlMesh */
 
@@ -31,6 +33,9 @@ export class Viewer {
   #filled = {value: 0};
   #painted = {value: 0};
   #top = {value: uncut};
+  #shaded = {value: 1};
+  #shadow = new Shadow();
+  #reach = 0;  // of the shadow's texture, millimetres
   #heights = [0, 0];  // height range of the model in its current pose, millimetres
   #uprightHeights = [0, 0];
   /** @type {Vector3[]} */
@@ -39,6 +44,9 @@ export class Viewer {
   #subject = new Group();  // the model and the platform below it
   /** @type {any} */
   #model = null;
+  /** @type {any} a simpler mesh of a large model, drawn while it turns */
+  #coarse = null;
+  #isCoarse = false;  // whether the model itself is such a mesh, whose successor may need it
   /** @type {any} */
   #places = null;
   /** @type {any} */
@@ -58,8 +66,8 @@ export class Viewer {
     this.#onTurning = onTurning;
     this.#renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
     this.#camera.up.set(0, 0, 1);
-    this.#scene.add(new HemisphereLight(0xeaf6f8, 0x33434b, 1.5), this.#camera, this.#subject);
-    lightsBeside(this.#camera);
+    this.#renderer.toneMapping = ACESFilmicToneMapping;
+    this.#scene.add(roomLight(), lampLight(), this.#camera, this.#subject);
     this.#controls = new OrbitControls(this.#camera, canvas);
     canvas.style.touchAction = 'pan-y';  // a vertical swipe scrolls the page, as the picture may be as wide as the page
     this.#controls.enableDamping = true;
@@ -68,11 +76,14 @@ export class Viewer {
     this.#controls.addEventListener('start', () => {
       this.#isAimed = true;
       this.turn(false);
+      this.#simplify(true);
     });
+    this.#controls.addEventListener('end', () => this.#simplify(false));
     new ResizeObserver(() => this.#resize()).observe(canvas);
     canvas.addEventListener('webglcontextlost', onLost);
     canvas.addEventListener('keydown', (event) => this.#key(event));
     onClick(canvas, (x, y) => {
+      this.#simplify(false);
       const place = this.#model && placeAt(this.#renderer, this.#camera, this.#model, this.#top.value, x, y);
       place && onPlace(place);
     });
@@ -80,17 +91,20 @@ export class Viewer {
 
   /**
    * @param {StlMesh} mesh  its positions are moved to the GPU and not kept in memory
-   * @param {{isFirst?: boolean, isGrowing?: boolean}} [growth]  isFirst: false keeps the user's camera, for a further mesh of the same
-   *     object; isGrowing: it is replaced soon, and shaded flat
+   * @param {{isFirst?: boolean, isGrowing?: boolean, isCoarse?: boolean}} [growth]  isFirst: false keeps the user's
+   *     camera, for a further mesh of the same object; isGrowing: it is replaced soon, and shaded flat; isCoarse: the
+   *     whole model follows, and if it is large, this mesh is drawn while it turns
    */
-  show({positions, filled, min, max}, {isFirst = true, isGrowing = false} = {}) {
+  show({positions, filled, min, max}, {isFirst = true, isGrowing = false, isCoarse = false} = {}) {
     const isTurning = this.#controls.autoRotate;
+    const isLarge = positions.length > 9 * maxSmooth;
+    const before = !isFirst && this.#isCoarse && isLarge ? this.#model : null;
+    before?.removeFromParent();
     this.clear();
+    this.#coarse = before;
+    this.#isCoarse = isCoarse;
     const geometry = new BufferGeometry();
-    const isSmooth = !isGrowing && positions.length <= 9 * maxSmooth;
-    if (isSmooth) {
-      geometry.setAttribute('normal', new BufferAttribute(smoothNormals(positions), 3, true));
-    }
+    const isSmooth = !isGrowing && !isLarge;
     const attribute = new BufferAttribute(positions, 3);
     attribute.onUpload(() => {
       attribute.array = /** @type {any} */ (null);
@@ -100,14 +114,30 @@ export class Viewer {
       geometry.setAttribute('filled', new BufferAttribute(filled, 1, true));
     }
     const middle = new Vector3(...min).add(new Vector3(...max)).divideScalar(2);
-    geometry.boundingSphere = new Sphere(middle, new Vector3(...max).distanceTo(middle));  // cannot be computed later, without the positions
-    this.#model = new Mesh(geometry, clayMaterial({edges: this.#edges, filled: this.#filled, painted: this.#painted, top: this.#top, isSmooth}));
+    const radius = new Vector3(...max).distanceTo(middle);
+    geometry.boundingSphere = new Sphere(middle, radius);  // cannot be computed later, without the positions
+    if (isSmooth) {
+      const normals = smoothNormals(positions);
+      geometry.setAttribute('normal', new BufferAttribute(normals, 3, true));
+      const light = lightOf(positions, normals, {center: middle.toArray(), radius});
+      geometry.setAttribute('light', new BufferAttribute(light, 2, true));
+    }
+    this.#model = new Mesh(geometry, clayMaterial({
+      edges: this.#edges, filled: this.#filled, painted: this.#painted, top: this.#top, shaded: this.#shaded, isSmooth,
+    }));
     this.#uprightHeights = this.#heights = [min[2], max[2]];
     const corners = positions.length / 3;
     this.#samples = Array.from({length: Math.min(corners, samplesKept)}, (_, i) =>
       new Vector3().fromArray(positions, 3 * Math.floor(i * corners / Math.min(corners, samplesKept))));
     const reach = Math.hypot(Math.max(-min[0], max[0]), Math.max(-min[1], max[1]));
-    this.#subject.add(this.#model, platform(Math.max(3, Math.ceil(reach / ringStep)) * ringStep));
+    this.#reach = 2 * reach + 1.3 * Math.max(0, max[2]);  // the lamp's rays lie flatter than 45 degrees
+    const rings = Math.max(3, Math.ceil(reach / ringStep));
+    this.#subject.add(this.#model, platform(rings * ringStep, this.#shadow.texture, this.#reach));
+    if (this.#coarse) {
+      this.#coarse.visible = false;
+      this.#subject.add(this.#coarse);
+    }
+    this.#castShadow(isGrowing);
     this.#resize();
     if (isFirst) {
       this.reset();
@@ -127,6 +157,9 @@ export class Viewer {
     });
     this.#subject.clear();
     this.#model = null;
+    this.#coarse = null;
+    this.#isCoarse = false;
+    this.#shaded.value = 1;
     this.#places = null;
     this.#measure = null;
     this.#painted.value = 0;
@@ -156,6 +189,10 @@ export class Viewer {
       this.#heights = this.#uprightHeights;
     }
     this.#model.updateMatrixWorld();
+    this.#coarse?.quaternion.copy(quaternion);
+    this.#coarse?.position.copy(position);
+    this.#shaded.value = place_mm ? 0 : 1;
+    this.#castShadow();
     this.showPlaces([]);
     this.reset();
   }
@@ -205,6 +242,21 @@ export class Viewer {
     return height;
   }
 
+  /** Draws the shadow of the model in its current pose. @param {boolean} [isBrief]  whether it is soon drawn again */
+  #castShadow(isBrief = false) {
+    this.#model.updateMatrixWorld();
+    this.#shadow.draw(this.#renderer, this.#coarse ?? this.#model, this.#model.matrixWorld, this.#reach, isBrief);
+  }
+
+  /** Shows the coarse mesh of a large model, while it turns. @param {boolean} isTurning */
+  #simplify(isTurning) {
+    if (this.#coarse) {
+      this.#coarse.visible = isTurning;
+      this.#model.visible = !isTurning;
+      this.#draw();
+    }
+  }
+
   /** The bounding sphere of the model in its current pose. */
   #ball() {
     return this.#model.geometry.boundingSphere.clone().applyMatrix4(this.#model.matrixWorld);
@@ -229,6 +281,7 @@ export class Viewer {
   turn(isTurning) {
     if (this.#controls.autoRotate !== isTurning) {
       this.#controls.autoRotate = isTurning;
+      this.#simplify(isTurning);
       this.#onTurning(isTurning);
     }
     this.#draw();

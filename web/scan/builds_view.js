@@ -37,7 +37,7 @@ function explainFields() {
   for (const row of form().querySelectorAll('[data-of]')) {
     const isOf = /** @type {HTMLElement} */ (row).dataset.of === method;
     show(row, isOf);
-    part(row, 'input').disabled = !isOf;
+    part(row, 'input, select').disabled = !isOf;
   }
   const fields = clipFields();
   for (let axis = 0; axis < 3; ++axis) {
@@ -46,7 +46,7 @@ function explainFields() {
   }
 }
 
-/** @param {Settings & {max_error_mm?: number, level?: number | null}} settings */
+/** @param {Settings & {max_error_mm?: number, parts?: string, level?: number | null}} settings */
 function fill(settings) {
   offerLeaves(element('build-leaves'), settings.leaf_size_mm);
   for (const radio of form().querySelectorAll('[name=method]')) {
@@ -54,6 +54,7 @@ function fill(settings) {
   }
   element('build-pose').value = settings.calibrate;
   element('build-error').value = settings.max_error_mm ?? 0.04;
+  element('build-parts').value = settings.parts ?? 'main';
   element('build-gap').value = gap(settings.threshold_m2);
   element('build-level').value = settings.level ?? '';
   clipFields().forEach((field, index) => {
@@ -65,7 +66,10 @@ function fill(settings) {
 /** The form's settings, without those that the method does not use. */
 function chosenSettings() {
   const method = chosenMethod();
-  const own = method === 'solid' ? {max_error_mm: element('build-error').valueAsNumber} : {
+  const own = method === 'solid' ? {
+    max_error_mm: element('build-error').valueAsNumber,
+    parts: element('build-parts').value,
+  } : {
     threshold_m2: threshold(element('build-gap').valueAsNumber),
     level: element('build-level').value === '' ? null : element('build-level').valueAsNumber,
   };

@@ -9,14 +9,12 @@ import {text} from '../base/texts.js';
 
 const file = 'demo.zip';
 
-/** @param {(id: string) => void} onScan  called with the demo's scan */
-export const openDemo = (onScan) => act('failure.demo', async () => {
+export const openDemo = () => act('failure.demo', async () => {
   const response = await fetch(file);
   if (!response.ok) {
     throw new api.Problem('http', text('problem.http', {status: String(response.status)}));
   }
   const {id} = await api.importScan(await response.blob());
-  onScan(id);
   const scan = await api.label(id, {name: text('first.demo-name')});
   location.hash = scan.state === 'running' ? '' : id;
   return (now) => scan.state === 'running' ? states.withStarted(now, scan) : states.withSelected(states.withScan(now, scan), id);

@@ -40,7 +40,7 @@ function stepStates(scan) {
 }
 
 /** Elapsed and total time. @param {Scan} scan */
-const timeOf = ({seconds_elapsed, seconds_left, error}) => seconds_left === null || error ? format.clock(seconds_elapsed) :
+const timeOf = ({seconds_elapsed, seconds_left, error}) => !seconds_left || error ? format.clock(seconds_elapsed) :
     text('time.of', {elapsed: format.clock(seconds_elapsed), total: format.clock(seconds_elapsed + seconds_left)});
 
 /** How long a failed stop is still retried. @param {Scan} scan */

@@ -7,11 +7,16 @@ import {reasonText} from '../base/wording.js';
 /** @typedef {import('../api/api.js').Model} Model */
 
 /** @typedef {import('../api/api.js').Reason} Reason */
-/** @typedef {{text: string, href: string}} Action  link to a reason's remedy */
+/**
+ * A link to a reason's remedy.
+ * @typedef {{text: string, href: string, field?: string}} Action  field: of the form Build again
+ */
 
 const calibrate = {text: text('cure.calibrate'), href: '#calibrate'};
 const space = {text: text('cure.space'), href: '#calibrate'};
 const flatten = {text: text('cure.flatten'), href: '#calibrate'};
+const wholeSpace = {text: text('cure.whole-space'), href: '#build-again', field: 'build-clip'};
+const allParts = {text: text('cure.all-parts'), href: '#build-again', field: 'build-parts'};
 const again = {text: text('cure.again'), href: '#'};
 
 /** @type {Record<string, Action>} */
@@ -20,14 +25,19 @@ const actions = {
   'floats': calibrate,
   'sunk': calibrate,
   'no-map': flatten,
-  'cut-by-box': space,
+  'cut-by-box': wholeSpace,
   'empty': again,
   'moved': again,
   'little-seen': again,
-  'parts-dropped': again,
+  'parts-dropped': allParts,
   'part-missing': calibrate,
   'coarser': space,
 };
+
+const saidByLink = new Set(['no-map', 'parts-dropped', 'cut-by-box']);
+
+/** What to do about a reason; nothing where the link beside it says that. @param {Reason} reason */
+const hintOf = ({code, hint}) => saidByLink.has(code ?? '') ? '' : sentence(hint);
 
 /** Findings of a calibration that are not part of a verdict. */
 const improvable = ['no-map', 'focal-length', 'wobble'];
@@ -60,7 +70,11 @@ export function verdictOf({quality, watertight}, findings = []) {
     text: quality.verdict !== 'good' ? '' :
       text(watertight ? 'verdict.good-about' : 'verdict.open'),
     reasons: [...quality.reasons, ...findings.filter(({code}) => improvable.includes(code ?? ''))].map((reason) => ({
-      key: `${reason.code} ${reason.detail}`, detail: sentence(reasonText(reason)), hint: sentence(reason.hint), action: actionOf(reason.code),
-      places: reason.places_mm ?? []})),
+      key: `${reason.code} ${reason.detail}`,
+      detail: sentence(reasonText(reason)),
+      hint: hintOf(reason),
+      action: actionOf(reason.code),
+      places: reason.places_mm ?? [],
+    })),
   };
 }

@@ -54,10 +54,13 @@ function markPlaces() {
   }
 }
 
-/** @param {import('../model/stl.js').Mesh} mesh @param {boolean} isFirst  whether it is the first mesh of its object */
-function put(mesh, isFirst) {
+/**
+ * @param {import('../model/stl.js').Mesh} mesh @param {boolean} isFirst  whether it is the first mesh of its object
+ * @param {boolean} [isCoarse]  whether the whole model follows
+ */
+function put(mesh, isFirst, isCoarse = false) {
   show(element('filled'), mesh.filled !== null);
-  viewer?.show(mesh, {isFirst, isGrowing: Boolean(due?.growing)});
+  viewer?.show(mesh, {isFirst, isGrowing: Boolean(due?.growing), isCoarse});
   standUp();
   offerColours(due?.hasColours && due.model?.url || null);
   if (isFirst) {
@@ -74,7 +77,7 @@ async function putCoarse(model, signal) {
   try {
     const mesh = await readStl(await api.model(coarseUrl(model), signal));
     if (!signal.aborted) {
-      put(mesh, true);
+      put(mesh, true, true);
     }
     return !signal.aborted;
   } catch {

@@ -7,9 +7,10 @@ import {note, noted} from '../base/storage.js';
 
 const betweenLooks = 2000;  // milliseconds
 const checkedKey = 'octurn-checked';
-const demoKey = 'octurn-demo';  // the demo's scan, which does not count as a first model
+const demoTaken = '2026-11-25T05:01:47Z';  // the scan in demo.zip, which keeps its time when it is imported
 const dismissedKey = 'octurn-first-steps-dismissed';
 
+/** @typedef {import('../api/api.js').Scan} Scan */
 /** @typedef {{isChecked: boolean, isCalibrated: boolean | null, hasModel: boolean | null, isDismissed: boolean}} Known  null: not known yet */
 
 /**
@@ -27,6 +28,9 @@ export function stepsOf({isChecked, isCalibrated: hasPose, hasModel, isDismissed
   return {check: stateOf('check'), calibrate: stateOf('calibrate'), scan: stateOf('scan')};
 }
 
+/** Whether a scan of this scanner has a model. The demo, opened in any browser, does not count. @param {Scan[]} scans */
+export const hasFirstModel = (scans) => scans.some(({model, created}) => model !== null && created !== demoTaken);
+
 /** @type {Known} */
 const known = {isChecked: noted(checkedKey) !== null, isCalibrated: null, hasModel: null, isDismissed: noted(dismissedKey) !== null};
 
@@ -42,9 +46,9 @@ function render() {
   }
 }
 
-/** @param {import('../api/api.js').Status} status */
-export function seeNewest({newest}) {
-  known.hasModel = newest !== null && newest !== noted(demoKey);
+/** @param {Scan[]} scans  all */
+export function seeScans(scans) {
+  known.hasModel = hasFirstModel(scans);
   render();
 }
 
@@ -63,7 +67,7 @@ function listen() {
     (await import('./scanner_page.js')).check();
   });
   part(element('first-steps'), '[data-step=scan] button').addEventListener('click', () => element('start').focus());
-  element('demo').addEventListener('click', async () => (await import('../scan/demo.js')).openDemo((id) => note(demoKey, id)));
+  element('demo').addEventListener('click', async () => (await import('../scan/demo.js')).openDemo());
   element('dismiss-steps').addEventListener('click', () => {
     known.isDismissed = true;
     note(dismissedKey);

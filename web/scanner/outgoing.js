@@ -102,7 +102,7 @@ function takeNew(card, place, add) {
 
 async function addPrinter() {
   const [name, kind, url, key] = ['name', 'kind', 'url', 'key'].map((field) => element(`printer-${field}`).value.trim());
-  const user = kind === 'prusalink' && key !== '' ? 'maker' : '';
+  const user = kind === 'prusalink' && key !== '' ? element('printer-user').value.trim() : '';
   await json('printers', sending('POST', {name, kind, url, user, key}));
   for (const field of ['name', 'url', 'key']) {
     element(`printer-${field}`).value = '';
@@ -121,6 +121,9 @@ export async function prepareOutgoing() {
   await fetchFragment(element('outgoing'), 'outgoing.html');
   element('outgoing').replaceWith(...element('outgoing').childNodes);
   element('printer-kind').replaceChildren(...Object.entries(kinds).map(([kind, name]) => new Option(name, kind)));
+  const seeKind = () => show(element('printer-login'), element('printer-kind').value === 'prusalink');
+  element('printer-kind').addEventListener('change', seeKind);
+  seeKind();
   takeNew('printers-card', 'printer-complaint', addPrinter);
   takeNew('webhooks-card', 'webhook-complaint', addWebhook);
   listen('printer-rows', 'printer-complaint', {

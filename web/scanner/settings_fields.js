@@ -1,7 +1,7 @@
 // The fields of the settings page: one for each setting, built from its schema.
 
 import {copyOf, part, setText, show} from '../base/dom.js';
-import {choiceName, complaintOf, helpOf, nameOf, valueText, wordsOf} from './settings_form.js';
+import {asShown, choiceName, complaintOf, helpOf, nameOf, valueText, wordsOf} from './settings_form.js';
 import {text, translated} from '../base/texts.js';
 
 /** @typedef {import('../api/api_settings.js').SettingSchema} SettingSchema */
@@ -119,11 +119,12 @@ function editorOf(schema) {
 
 /**
  * @param {string} key
- * @param {SettingSchema} schema
+ * @param {SettingSchema} stored
  * @param {() => void} onReset  called to restore the preset
  * @returns {SettingField}
  */
-export function makeField(key, schema, onReset) {
+export function makeField(key, stored, onReset) {
+  const {schema, toShown, toStored} = asShown(stored);
   const root = copyOf('setting');
   const editor = editorOf(schema);
   const [label, reset, help, complaint] = ['label', 'button', '.setting-help', '.setting-complaint'].map((one) => part(root, one));
@@ -145,6 +146,8 @@ export function makeField(key, schema, onReset) {
   root.classList.toggle('flag', schema.type === 'boolean');
   part(root, '.setting-input').append(editor.root);
   reset.addEventListener('click', onReset);
+  /** @type {{value: any, shown: any}} */
+  let written = {value: null, shown: null};
   const complain = (/** @type {string} */ text) => {
     setText(complaint, text);
     root.classList.toggle('wrong', text !== '');
@@ -152,11 +155,16 @@ export function makeField(key, schema, onReset) {
   };
   return {
     key, root, complain,
-    read: editor.read,
+    read: () => {
+      const now = editor.read();
+      return now === written.shown ? written.value : toStored(now);
+    },
     write: (value, preset, isStored) => {
-      editor.write(value);
+      written = {value, shown: toShown(value)};
+      editor.write(written.shown);
       complain('');
-      setText(reset, text('settings.back-to', {value: schema.minItems ? text('settings.preset') : valueText(preset)}));
+      const was = schema.minItems ? text('settings.preset') : valueText(toShown(preset));
+      setText(reset, text('settings.back-to', {value: was}));
       show(reset, isStored);
     },
     check: () => complaintOf(schema, editor.read()),

@@ -1,6 +1,7 @@
 // Values of the scanner's settings, and texts about them. Pure.
 
 import {degrees as angle, millimetres, sentence} from '../base/format.js';
+import {gap, threshold} from '../scan/settings.js';
 import {isText, text} from '../base/texts.js';
 
 /** @typedef {import('../api/api_settings.js').SettingSchema} SettingSchema */
@@ -67,6 +68,20 @@ export function complaintOf(schema, value) {
     return boxComplaint(value);
   }
   return schema.minimum === undefined ? '' : numberComplaint(schema, value);
+}
+
+/**
+ * How a setting is shown: a square of a length, as the scanner keeps it, as that length in millimetres.
+ * @param {SettingSchema} schema
+ * @returns {{schema: SettingSchema, toShown: (value: any) => any, toStored: (shown: any) => any}}
+ */
+export function asShown(schema) {
+  const same = (/** @type {any} */ value) => value;
+  if (schema['x-unit'] !== 'm2') {
+    return {schema, toShown: same, toStored: same};
+  }
+  const [minimum, maximum] = [schema.minimum, schema.maximum].map((value) => gap(Number(value)));
+  return {schema: {...schema, 'x-unit': 'mm', minimum, maximum}, toShown: gap, toStored: threshold};
 }
 
 /** The setting to which a problem refers, for example in `"ports": unknown key`. @param {Refusal} problem */

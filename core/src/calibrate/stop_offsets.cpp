@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdio>
 #include <numbers>
+#include <numeric>
+#include <span>
 
 #include "calibrate/for_each_stop.hpp"
 #include "io/number_text.hpp"
@@ -33,10 +35,10 @@ constexpr double min_sensitivity = 0.007;
 constexpr double min_slip_deg = 0.6;
 constexpr double slip_sigmas = 3;
 constexpr double slip_to_noise = 5;  // times the median step, which is the sensor's fixed pattern
-// A slip lasts: the platform stays where it slipped to. An offset at one stop alone, or one that
-// grows over several, comes from an object that is seen from its narrow side.
-constexpr double min_lasting = 0.6;  // of the step, between the stops before and after it
-constexpr std::ptrdiff_t lasting_stops = 3;
+// A slip lasts: the platform stays where it slipped to. An object that is seen from its narrow side
+// is off for one to three stops, and one before a sensor with a pattern for three to ten, by up to
+// a degree.
+constexpr double min_explained = 0.5;  // of the offsets' squares about their mean, by the step
 
 // A sensor's fixed pattern alone looks like a turn of 356 degrees.
 constexpr double min_drift_deg = 8;
@@ -144,24 +146,26 @@ double step_sigma(const Eigen::MatrixXd& covariance, Eigen::Index stop) {
                    2 * covariance(stop - 1, stop));
 }
 
-/// The median of the offsets of some stops. @param first, last  stops, both included
-double median_offset(const std::vector<double>& offsets, std::ptrdiff_t first,
-                     std::ptrdiff_t last) {
-  std::vector<double> some(
-      offsets.begin() + std::max<std::ptrdiff_t>(first, 0),
-      offsets.begin() + std::min(last + 1, static_cast<std::ptrdiff_t>(offsets.size())));
-  std::ranges::sort(some);
-  return some[some.size() / 2];
+/// The mean of some offsets, radians.
+double mean(std::span<const double> offsets) {
+  return std::accumulate(offsets.begin(), offsets.end(), 0.0) / static_cast<double>(offsets.size());
 }
 
-/// Whether the stops around a step differ by most of it, too.
-/// @param stop  the first after it
-bool lasts(const std::vector<double>& offsets, std::ptrdiff_t stop) {
-  const auto at = static_cast<std::size_t>(stop);
-  const double step = offsets[at] - offsets[at - 1];
-  const double around = median_offset(offsets, stop, stop + lasting_stops - 1) -
-                        median_offset(offsets, stop - lasting_stops, stop - 1);
-  return around / step > min_lasting;
+/// The share of the offsets' squares about their mean that a step between two constants explains.
+/// @param stop  the first after the step, from 1 on
+/// @return      0 if the constants differ the other way than the offsets beside the step
+double explained_by_step(std::span<const double> offsets, std::size_t stop) {
+  const double middle = mean(offsets);
+  double squares = 0;
+  for (const double offset : offsets) {
+    squares += (offset - middle) * (offset - middle);
+  }
+  const double step = mean(offsets.subspan(stop)) - mean(offsets.first(stop));
+  const auto count = static_cast<double>(offsets.size());
+  const auto before = static_cast<double>(stop);
+  return step * (offsets[stop] - offsets[stop - 1]) > 0
+             ? before * (count - before) / count * step * step / squares
+             : 0;
 }
 
 /// The largest step between neighbouring stops, if it stands out of the others.
@@ -180,7 +184,8 @@ std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
   std::ranges::sort(sorted);
   const double sigma = step_sigma(solved.covariance, at);
   if (*largest < radians_from_degrees(min_slip_deg) || *largest < slip_sigmas * sigma ||
-      *largest < slip_to_noise * sorted[middle] || !lasts(offsets, at + 1)) {
+      *largest < slip_to_noise * sorted[middle] ||
+      explained_by_step(offsets, static_cast<std::size_t>(at) + 1) < min_explained) {
     return std::nullopt;
   }
   const int stop = static_cast<int>(at) + 1;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -104,6 +105,31 @@ TEST(FindSlips, FindsNoneWhereTheOffsetsComeBack) {
   solved.offsets[5] -= radians_from_degrees(0.6);
   solved.offsets[6] -= radians_from_degrees(1.6);
   EXPECT_TRUE(find_slips(even_angles(24), solved).empty());
+}
+
+// Two turns of the simulated robot before a sensor with a pattern, on its feet and on its side,
+// degrees.
+TEST(FindSlips, FindsNoneWhereAPatternMovesManyStops) {
+  const std::array<std::array<double, 24>, 2> turns = {{
+      {0,    -0.05, 0.30, 0.33, 0.31, 0.69, 0.66, 0.65, 0.63, 0.64, 0.67, 0.76,
+       0.56, 0.70,  0.95, 0.85, 0.71, 0.88, 0.97, 0.22, 0.25, 0.19, 0.12, 0.13},
+      {0,    -0.55, -0.47, -0.01, 0.71,  0.62,  0.59,  0.65,  0.80,  0.71,  0.56,  0.38,
+       0.04, -0.21, -0.13, -0.26, -0.08, -0.00, -0.10, -0.26, -0.11, -0.15, -0.15, 0.07},
+  }};
+  for (const auto& turn : turns) {
+    StopOffsets solved = noisy_offsets(24);
+    std::ranges::transform(turn, solved.offsets.begin(),
+                           [](double deg) { return radians_from_degrees(deg); });
+    EXPECT_TRUE(find_slips(even_angles(24), solved).empty());
+
+    // A platform that slips before the same sensor by more than the pattern's degree is found.
+    for (std::size_t stop = 10; stop < 24; ++stop) {
+      solved.offsets[stop] -= radians_from_degrees(2);
+    }
+    const auto findings = find_slips(even_angles(24), solved);
+    ASSERT_EQ(findings.size(), 1U);
+    EXPECT_EQ(findings[0].stop, 10);
+  }
 }
 
 TEST(FindSlips, NamesAStepAtTheLastStop) {

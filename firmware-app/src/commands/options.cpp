@@ -1,5 +1,6 @@
 #include "commands/options.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 

@@ -38,9 +38,10 @@ OpticsRecord some_optics() {
 
 class ScanOptics : public ScannerTest {
  protected:
-  /// Without the pattern, which without a map would keep optics from being solved.
+  /// Without the pattern, which without a map would keep optics from being solved, and without
+  /// noise, for which the simulated object is too simple.
   static RigOptions wrong_rig() {
-    RigOptions options{.sensor_uri = "octurn-simulator://?speed=50&pattern=0", .speed = 50};
+    RigOptions options{.sensor_uri = "octurn-simulator://?speed=50&pattern=0&noise=0", .speed = 50};
     options.open_sensor = [](const std::string& uri) {
       return std::make_unique<SensorOfWrongOptics>(open_sensor(uri));
     };
@@ -58,7 +59,7 @@ TEST_F(ScanOptics, OfATurnAreKeptForTheNextScan) {
   const CalibrationRun run = **scanner.calibration_run();
   ASSERT_EQ(run.state, CalibrationRun::State::done) << run.report->calibration.reason;
   ASSERT_TRUE(run.report->calibration.optics_differ);
-  const auto kept = read_optics(store_.data(), "simulated-1");
+  const auto kept = read_optics(store_.data(), "simulated-1-perfect");
   ASSERT_EQ(kept.size(), 1U);
   EXPECT_EQ(kept.front().origin, OpticsOrigin::turn);
   EXPECT_NEAR(kept.front().optics.value.fx, 575.8, 3 * kept.front().optics.sigma.fx);
@@ -72,7 +73,7 @@ TEST_F(ScanOptics, OfATurnAreKeptForTheNextScan) {
 
   ASSERT_TRUE(scanner.undo_optics());
   EXPECT_TRUE(scanner.known_sensor()->optics.empty());
-  EXPECT_FALSE(optics_in_force(store_.data(), "simulated-1"));
+  EXPECT_FALSE(optics_in_force(store_.data(), "simulated-1-perfect"));
 }
 
 TEST_F(ScanOptics, OfAScanAreKeptForTheNextOne) {
@@ -80,7 +81,7 @@ TEST_F(ScanOptics, OfAScanAreKeptForTheNextOne) {
   const Scan first = stored(ScannerTest::scan(scanner, few_snapshots(24)));
   EXPECT_FALSE(first.optics) << "nobody knew them";
   ASSERT_TRUE(first.solved && first.solved->optics);
-  const auto kept = read_optics(store_.data(), "simulated-1");
+  const auto kept = read_optics(store_.data(), "simulated-1-perfect");
   ASSERT_EQ(kept.size(), 1U);
   EXPECT_EQ(kept.front().origin, OpticsOrigin::scan);
   EXPECT_EQ(kept.front().optics.value, first.solved->optics->value);

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "calibration/optics_files.hpp"
 #include "calibration/sensor_map_files.hpp"
 #include "octurn/png.hpp"
 #include "simulator/simulated_kinect.hpp"
@@ -82,6 +83,30 @@ TEST_F(WallViews, ChangeNothingWhereTheWallIsRefused) {
   EXPECT_NE(report.reason.find("2.5 m away"), std::string::npos) << report.reason;
   EXPECT_TRUE(content_of(sensor_map_path(data_.path(), "A1")) == before);
   EXPECT_EQ(next_wall(data_.path(), "A1"), 0.9);
+}
+
+TEST_F(WallViews, MakeTheMapAgainForOtherOptics) {
+  add(0.65);
+  add(0.9);
+  const SensorMap before = map();
+  EXPECT_FALSE(before.optics);
+  const OpticsRecord record{.optics = {.value = {.fx = 590, .fy = 590, .k1 = -0.1}, .sigma = {}},
+                            .at = "2026-11-28T08:00:00Z"};
+  keep_optics(data_.path(), "A1", record);
+  remake_sensor_map(data_.path(), "A1");
+  EXPECT_EQ(map().optics, record.optics.value);
+  EXPECT_NE(map().near, before.near);
+  undo_optics(data_.path(), "A1");
+  remake_sensor_map(data_.path(), "A1");
+  EXPECT_FALSE(map().optics);
+  EXPECT_EQ(map().near, before.near);
+  EXPECT_EQ(map().far, before.far);
+}
+
+TEST_F(WallViews, LeaveAMapThatHasNone) {
+  put(sensor_map_path(data_.path(), "A1"), "brought from another machine");
+  remake_sensor_map(data_.path(), "A1");
+  EXPECT_EQ(content_of(sensor_map_path(data_.path(), "A1")), "brought from another machine");
 }
 
 TEST_F(WallViews, GoWithTheirMap) {

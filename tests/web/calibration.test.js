@@ -166,6 +166,14 @@ test('a map is told with its date, its sensor and what it did', () => {
   assert.match(texts.mapText({...calibration, sensor_map: map}), /^Done on .*21.* for sensor A00361: 0\.81 → 0\.21 steps/);
 });
 
+test('measured optics are told with their date and sigmas, and nothing without them', () => {
+  assert.equal(texts.opticsText(calibration), '');
+  const value = {fx: 590.24, fy: 590.1, cx: 331.8, cy: 245.96, k1: -0.05, k2: 0, depth_scale: 1, depth_offset_per_m: 0};
+  const optics = {...value, sigma: {...value, fx: 0.83, cx: 0.71}, source: 'scan', at: '2026-11-28T08:15:00Z', history: []};
+  assert.match(texts.opticsText({...calibration, optics}),
+    /measured by a scan on .*28.*: focal length 590\.2 ± 0\.8 pixels, middle of the picture 331\.8, 246\.0 ± 0\.7 pixels\.$/);
+});
+
 test('how long the sensor has been on is told where it is known', () => {
   assert.equal(texts.warmText(null), '');
   assert.match(texts.warmText(20), /less than a minute; this page keeps it on\.$/);

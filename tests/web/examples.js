@@ -25,7 +25,7 @@ export const finished = {
 export const calibration = {
   platform_from_sensor: [[1, 0, 0, 0], [0, -0.4226, 0.9063, -0.62], [0, -0.9063, -0.4226, 0.36], [0, 0, 0, 1]],
   source: 'default', at: null, shift_mm: null, tilt_deg: null, sigma_mm: null, sigma_deg: null, before_mm: null, after_mm: null,
-  scale: 1, sensor_map: null, sensor_on_s: null, history: [], run: null,
+  scale: 1, sensor_map: null, sensor_on_s: null, optics: null, history: [], run: null,
 };
 
 export const turnReport = {

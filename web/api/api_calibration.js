@@ -51,10 +51,14 @@ import {json, sending} from './api.js';
  * @property {BoardLook | null} look  in a run for a lens, the current view of the board
  * @property {{code: string, detail: string, hint: string} | null} error
  *
+ * @typedef {{fx: number, fy: number, cx: number, cy: number, k1: number, k2: number, depth_scale: number, depth_offset_per_m: number}} Optics
+ * @typedef {Optics & {sigma: Optics, source: 'turn' | 'scan', at: string}} OpticsRecord
+ *
  * @typedef {PoseRecord & {
  *   shift_mm: number | null, tilt_deg: number | null,
  *   sensor_map: {serial: string, at: string, rms_before: number, rms_after: number} | null,
  *   sensor_on_s: number | null,
+ *   optics: (OpticsRecord & {history: OpticsRecord[]}) | null,
  *   lens: {told: Lens, kept: (Lens & {serial: string, at: string, rms_px: number}) | null} | null,
  *   history: PoseRecord[], run: CalibrationRun | null}} Calibration
  *
@@ -100,7 +104,7 @@ export const cancel = () => changing(json('calibration/cancel', sending('POST'))
 /** Restores the pose before the one in force. */
 export const undo = () => changing(json('calibration/undo', sending('POST')));
 
-/** @param {{platform_from_sensor?: number[][] | null, scale?: number, sensor_map?: null, lens?: 'keep' | 'discard' | null}} wanted */
+/** @param {{platform_from_sensor?: number[][] | null, scale?: number, sensor_map?: null, optics?: null, lens?: 'keep' | 'discard' | null}} wanted */
 export const change = (wanted) => changing(json('calibration', sending('PATCH', wanted)));
 
 /** Whether a pose was found with this rig: by a turn, a scan, or on the page. @param {PoseRecord} pose */

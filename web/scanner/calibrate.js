@@ -181,6 +181,7 @@ function listen() {
   click('measure-wall', measureWall);
   click('wall-cancel', () => act('failure.cancel-wall', requests.cancel));
   click('forget-map', () => act('failure.forget-map', () => requests.change({sensor_map: null})));
+  click('undo-optics', () => act('failure.undo-optics', () => requests.change({optics: null})));
   click('undo', () => act('failure.undo', requests.undo));
   click('unscale', () => act('failure.unscale', () => requests.change({scale: 1})));
   element('known').addEventListener('submit', scale);

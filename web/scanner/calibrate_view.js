@@ -120,6 +120,9 @@ export function showCalibration(calibration) {
   setText(element('wall-warm'), texts.warmText(calibration.sensor_on_s));
   show(element('wall-simulated'), !element('simulated').hidden);
   show(element('forget-map'), calibration.sensor_map !== null && calibration.run?.state !== 'running');
+  setText(element('optics'), texts.opticsText(calibration));
+  show(element('optics'), calibration.optics !== null);
+  show(element('undo-optics'), calibration.optics !== null && calibration.run?.state !== 'running');
   setText(element('scale-text'), texts.scaleText(calibration.scale));
   show(element('unscale'), calibration.scale !== 1);
 }

@@ -128,6 +128,10 @@ export const noPosesText = (calibration) => text(isCalibrated(calibration) ? 'po
 export const mapText = ({sensor_map: map}) => map ?
   text('map.done', {when: when(map.at), serial: map.serial, before: fixed(map.rms_before, 2), after: fixed(map.rms_after, 2)}) : text('map.none');
 
+/** The measured optics in force, in words; empty without any. @param {Calibration} calibration */
+export const opticsText = ({optics}) => optics ? text('optics.known', {when: when(optics.at), source: text(`optics.${optics.source}`),
+  focal: fixed(optics.fx, 1), focalSigma: fixed(optics.sigma.fx, 1), x: fixed(optics.cx, 1), y: fixed(optics.cy, 1), sigma: fixed(optics.sigma.cx, 1)}) : '';
+
 /** The sensor's warm-up time so far, in words. @param {number | null} seconds */
 export function warmText(seconds) {
   if (seconds === null) {

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -29,6 +30,9 @@ struct SensorMap {
   std::string made = {};          ///< UTC, ISO 8601; empty if unknown
   double before = 0;  ///< 1/m: rms distance of the walls from planes, over blocks of 4 x 4 pixels
   double after = 0;   ///< the same with this map
+  /// With which the walls were planes; nothing: those that the sensor reports. Distortion that
+  /// these optics take out is not in the map.
+  std::optional<SensorOptics> optics = {};
 };
 
 /// A step of a Kinect v1's disparity in inverse depth, 1/m (z = 345.489 m / disparity): the usual
@@ -130,8 +134,10 @@ struct SensorMapReport {
 /// (Khoshelham and Elberink 2012); the residuals of that fit are the sensor's error. One view gives
 /// a map for all distances, two or more one that changes with distance.
 ///
-/// @param views  at least one, all of one sensor
+/// @param views   at least one, all of one sensor
+/// @param optics  of that sensor, if they are known: a plane is one on undistorted coordinates
 /// @throws std::invalid_argument  if there is none, or their intrinsics differ
-SensorMapReport fit_sensor_map(std::span<const WallView> views);
+SensorMapReport fit_sensor_map(std::span<const WallView> views,
+                               const std::optional<SensorOptics>& optics = {});
 
 }  // namespace octurn

@@ -63,6 +63,8 @@ struct SensorOptics {
   double k2 = 0;
   double depth_scale = 1;
   double depth_offset_per_m = 0;  ///< 1/m
+
+  bool operator==(const SensorOptics&) const = default;
 };
 
 /// Measured optics, and the standard deviation of each member.

@@ -171,14 +171,15 @@ void expect_one_sensor(std::span<const WallView> views) {
 
 }  // namespace
 
-SensorMapReport fit_sensor_map(std::span<const WallView> views) {
+SensorMapReport fit_sensor_map(std::span<const WallView> views,
+                               const std::optional<SensorOptics>& optics) {
   expect_one_sensor(views);
   const Intrinsics& lens = views.front().intrinsics();
   SensorMapReport report;
   std::vector<FlatWall> walls;
   WallBlocks grid;
   for (const WallView& view : views) {
-    grid = make_wall_blocks(view);
+    grid = make_wall_blocks(view, optics);
     const WallPlane plane = fit_wall_plane(grid);
     walls.push_back(to_flat_wall(grid, plane));
     report.walls.push_back(
@@ -195,6 +196,7 @@ SensorMapReport fit_sensor_map(std::span<const WallView> views) {
   }
   const BlockMap blocks = combine(walls);
   report.map = to_map(blocks, grid, lens);
+  report.map.optics = optics;
   for (std::size_t i = 0; i < walls.size(); ++i) {
     WallReport& wall = report.walls[i];
     wall.before = rms(walls[i].residuals, [](std::size_t) { return 0.0; });

@@ -7,6 +7,7 @@
 
 #include "calibrate/median.hpp"
 #include "depth/depth_limits.hpp"
+#include "io/radial_distortion.hpp"
 
 namespace octurn {
 namespace {
@@ -15,8 +16,16 @@ constexpr int plane_iterations = 20;
 constexpr double min_scale = 3 * disparity_unit;
 constexpr double scale_of_median = 1.5;
 
-WallBlock make_block(const WallView& view, int first_u, int first_v, int& pixels) {
-  const Intrinsics& lens = view.intrinsics();
+/// Undistorts normalised coordinates. @param distortion  of the lens
+Eigen::Vector2d undistorted(const Eigen::Vector2d& ray, const RadialDistortion& distortion) {
+  return distortion.k1 == 0 && distortion.k2 == 0
+             ? ray
+             : Eigen::Vector2d(ray * distortion.undistorting_factor(ray.norm()));
+}
+
+/// @param lens  of the view, with the principal point and the focal lengths in force
+WallBlock make_block(const WallView& view, const Intrinsics& lens, int first_u, int first_v,
+                     int& pixels) {
   WallBlock block;
   int readings = 0;
   int all = 0;
@@ -64,14 +73,17 @@ double WallView::inverse_depth(int u, int v) const {
   return readings > 0 && 2 * readings >= frames_ ? static_cast<double>(sum_[i]) / readings : 0;
 }
 
-WallBlocks make_wall_blocks(const WallView& view) {
-  const Intrinsics& lens = view.intrinsics();
+WallBlocks make_wall_blocks(const WallView& view, const std::optional<SensorOptics>& optics) {
+  const Intrinsics lens = optics ? rectified(view.intrinsics(), *optics) : view.intrinsics();
+  const RadialDistortion distortion =
+      optics ? RadialDistortion{.k1 = optics->k1, .k2 = optics->k2} : RadialDistortion{};
   WallBlocks wall{.columns = (lens.width + block_side - 1) / block_side,
                   .rows = (lens.height + block_side - 1) / block_side};
   int pixels = 0;
   for (int v = 0; v < lens.height; v += block_side) {
     for (int u = 0; u < lens.width; u += block_side) {
-      wall.blocks.push_back(make_block(view, u, v, pixels));
+      wall.blocks.push_back(make_block(view, lens, u, v, pixels));
+      wall.blocks.back().ray = undistorted(wall.blocks.back().ray, distortion);
     }
   }
   wall.coverage = pixels / (static_cast<double>(lens.width) * lens.height);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 #include <vector>
 
 #include "octurn/sensor_map.hpp"
@@ -12,7 +13,7 @@ inline constexpr int block_side = 4;
 
 /// The mean reading of 4 x 4 pixels of a wall.
 struct WallBlock {
-  /// Where its readings are: (x, y) = ((u - cx) / fx, (v - cy) / fy).
+  /// Where its readings are: (x, y) = ((u - cx) / fx, (v - cy) / fy), undistorted.
   Eigen::Vector2d ray = Eigen::Vector2d::Zero();
   double inverse_depth = 0;  ///< 1/m
   bool is_valid = false;     ///< it has readings at half of its pixels or more
@@ -26,7 +27,8 @@ struct WallBlocks {
   double coverage = 0;                 ///< share of the pixels that have a reading
 };
 
-WallBlocks make_wall_blocks(const WallView& view);
+/// @param optics  of the sensor, if they are not those that the view's intrinsics tell
+WallBlocks make_wall_blocks(const WallView& view, const std::optional<SensorOptics>& optics = {});
 
 /// A plane in inverse depth: 1/z = a + b x + c y along the ray (x, y, 1).
 struct WallPlane {

@@ -9,6 +9,7 @@
 #include "io/grey_png.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
+#include "octurn/optics_json.hpp"
 #include "octurn/sensor_map.hpp"
 
 namespace octurn {
@@ -49,9 +50,13 @@ json to_document(const SensorMap& map) {
   if (!map.far.empty()) {
     inverse_depths.push_back(map.far_inverse_depth);
   }
-  return {{"version", 1},         {"inverse_depths", std::move(inverse_depths)},
-          {"serial", map.serial}, {"made", map.made},
-          {"before", map.before}, {"after", map.after}};
+  json document{{"version", 1},         {"inverse_depths", std::move(inverse_depths)},
+                {"serial", map.serial}, {"made", map.made},
+                {"before", map.before}, {"after", map.after}};
+  if (map.optics) {
+    document["optics"] = to_json(*map.optics);
+  }
+  return document;
 }
 
 /// Reads the text of a map. The planes stay empty; `far_inverse_depth` is 0 if there is only one.
@@ -64,6 +69,9 @@ SensorMap from_json(const json& document) {
                 .made = keys.at("made").text(),
                 .before = keys.at("before").number(0, max_inverse_depth),
                 .after = keys.at("after").number(0, max_inverse_depth)};
+  if (const auto optics = keys.value("optics")) {
+    map.optics = optics_from(*optics);
+  }
   const JsonValue depths = keys.at("inverse_depths");
   const std::vector<JsonValue> values = depths.elements();
   if (values.empty() || values.size() > 2) {

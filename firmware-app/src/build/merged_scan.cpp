@@ -130,14 +130,36 @@ Shot link_shot(const Shot& shot, const StoredTurn& turn, const fs::path& folder,
   return there;
 }
 
+/// The optics of a turn's models, as solved ones.
+SolvedOptics to_solved_optics(const Scan& turn) {
+  const Intrinsics& lens = turn.intrinsics;
+  return {.value = turn.optics.value_or(
+              SensorOptics{.fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy}),
+          .sigma = {.fx = 0, .fy = 0, .cx = 0, .cy = 0, .depth_scale = 0}};
+}
+
+/// Returns the solved pose of a depth sensor's turn. Known optics that differ from the merged
+/// scan's count as solved, too: a scan has one set.
+std::optional<SolvedPose> solved_depth_in(const Scan& merged, const Scan& turn) {
+  if (turn.optics == merged.optics || (turn.solved && turn.solved->optics)) {
+    return turn.solved;
+  }
+  SolvedPose solved =
+      turn.solved.value_or(SolvedPose{.platform_from_sensor = turn.platform_from_sensor});
+  solved.optics = to_solved_optics(turn);
+  return solved;
+}
+
 /// Returns a turn's solved pose. Planes that differ from the merged scan's count as solved, too: a
 /// scan has one set of configured planes.
 std::optional<SolvedPose> solved_in(const Scan& merged, const Scan& turn) {
+  if (!turn.laser) {
+    return solved_depth_in(merged, turn);
+  }
   const auto same_plane = [](const Laser& a, const Laser& b) {
     return a.normal == b.normal && a.distance == b.distance;
   };
-  if (turn.solved || !turn.laser ||
-      std::ranges::equal(turn.laser->lasers, merged.laser->lasers, same_plane)) {
+  if (turn.solved || std::ranges::equal(turn.laser->lasers, merged.laser->lasers, same_plane)) {
     return turn.solved;
   }
   return SolvedPose{.platform_from_sensor = turn.platform_from_sensor,

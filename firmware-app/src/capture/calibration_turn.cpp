@@ -7,8 +7,8 @@
 
 #include "calibration/lens_files.hpp"
 #include "calibration/sensor_map_json.hpp"
-#include "capture/depth_scale.hpp"
 #include "capture/plan.hpp"
+#include "capture/scan_of_rig.hpp"
 #include "capture/take_depth_image.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
@@ -98,14 +98,18 @@ json to_json(const CalibrationRun& run) {
           {"error", run.failure ? to_json(*run.failure) : json()}};
 }
 
-std::optional<TurnReport> measure_turn(const ScanSettings& settings, const SensorMap* map,
-                                       int threads, Rig& rig, const std::stop_token& stop,
+std::optional<TurnReport> measure_turn(const ScanSettings& settings,
+                                       const std::shared_ptr<const SensorMap>& map, int threads,
+                                       Rig& rig, const std::stop_token& stop,
                                        const ScanObserver& observer) {
   Turntable& turntable = rig.turntable();
   const int steps = turntable.steps_per_turn();
-  CalibrationTurn turn{.intrinsics = scaled(rig.sensor().intrinsics(), settings.depth_scale),
+  Scan scan = scan_of_sensor(rig, settings);
+  scan.sensor_map = map;
+  CalibrationTurn turn{.intrinsics = model_intrinsics(scan, {}),
                        .platform_from_sensor = settings.platform_from_sensor,
-                       .has_sensor_map = map != nullptr};
+                       .has_sensor_map = map != nullptr,
+                       .knows_optics = scan.optics.has_value()};
   std::vector<DepthFrame> frames;
   for (const std::int64_t position :
        stop_positions(turntable.position(), steps, settings.snapshots)) {
@@ -115,8 +119,7 @@ std::optional<TurnReport> measure_turn(const ScanSettings& settings, const Senso
     if (!frame) {
       return std::nullopt;
     }
-    frames.push_back(map != nullptr ? corrected(*std::move(frame), *map, turn.intrinsics.depth_unit)
-                                    : *std::move(frame));
+    frames.push_back(make_snapshot(*std::move(frame), scan, {}).frame);
     turn.angles.push_back(radians_from_degrees(angle_deg_at(position, steps)));
   }
   observer.on_progress(Phase::calibrating, settings.snapshots);

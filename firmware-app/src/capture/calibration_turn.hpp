@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <stop_token>
@@ -57,14 +58,16 @@ struct CalibrationRun {
 /// JSON of a run, for the API.
 nlohmann::json to_json(const CalibrationRun& run);
 
-/// Takes the depth images of one turn, and solves the sensor's pose from them. Nothing is stored.
+/// Takes the depth images of one turn, and solves the sensor's pose from them; its optics as well,
+/// if the rig's are not known. Nothing is stored.
 ///
 /// @param settings  `snapshots` is the number of stops; `platform_from_sensor` the initial pose
 /// @param map       map of the sensor's depth error, which is subtracted; may be null
 /// @return nullopt if stopped first
 /// @throws Error "sensor-...", "turntable-..."
-std::optional<TurnReport> measure_turn(const ScanSettings& settings, const SensorMap* map,
-                                       int threads, Rig& rig, const std::stop_token& stop,
+std::optional<TurnReport> measure_turn(const ScanSettings& settings,
+                                       const std::shared_ptr<const SensorMap>& map, int threads,
+                                       Rig& rig, const std::stop_token& stop,
                                        const ScanObserver& observer);
 
 }  // namespace octurn

@@ -11,4 +11,10 @@ inline Intrinsics scaled(Intrinsics lens, double depth_scale) {
   return lens;
 }
 
+/// The same of known optics, which have the scale in place of the depth unit.
+inline SensorOptics scaled(SensorOptics optics, double depth_scale) {
+  optics.depth_scale *= depth_scale;
+  return optics;
+}
+
 }  // namespace octurn

@@ -48,6 +48,8 @@ struct RigOptions {
   Retries retries = {};           ///< by the clock of a simulated rig
   /// Settings of a camera with line lasers, which replaces the depth sensor.
   std::optional<LaserSettings> laser = {};
+  /// Of the depth sensor, if they are known, with the depth scale; nothing: those that it reports.
+  std::optional<SensorOptics> optics = {};
   /// Functions that open the devices; tests replace them.
   std::function<std::unique_ptr<DepthSensor>(const std::string& uri)> open_sensor =
       octurn::open_sensor;
@@ -70,6 +72,10 @@ class Rig {
 
   /// Settings of the camera and the lasers; null if the rig has a depth sensor.
   const LaserSettings* laser() const { return options_.laser ? &*options_.laser : nullptr; }
+
+  /// The optics of the depth sensor, for scans and turns.
+  const std::optional<SensorOptics>& optics() const { return options_.optics; }
+  void use_optics(const std::optional<SensorOptics>& optics) { options_.optics = optics; }
 
   /// Replaces the lens in the camera's settings.
   void use_lens(const CameraLens& lens);

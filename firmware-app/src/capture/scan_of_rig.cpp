@@ -10,6 +10,15 @@
 
 namespace octurn {
 
+namespace {
+
+/// The sensor's intrinsics for a scan. Known optics have the scale themselves.
+Intrinsics to_intrinsics(DepthSensor& sensor, bool knows_optics, const ScanSettings& settings) {
+  return knows_optics ? sensor.intrinsics() : scaled(sensor.intrinsics(), settings.depth_scale);
+}
+
+}  // namespace
+
 Scan scan_of_rig(const Rig& rig, const ScanSettings& settings) {
   const LaserSettings* const configured = rig.laser();
   return configured == nullptr ? Scan{}
@@ -32,6 +41,15 @@ ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& setting
   return options;
 }
 
+Scan scan_of_sensor(Rig& rig, const ScanSettings& settings) {
+  return {.sensor_name = rig.sensor().name(),
+          .sensor_serial = rig.sensor().serial(),
+          .intrinsics = to_intrinsics(rig.sensor(), rig.optics().has_value(), settings),
+          .optics = rig.optics(),
+          .platform_from_sensor = settings.platform_from_sensor,
+          .clip = settings.clip};
+}
+
 void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem::path& folder,
                 Rig& rig) {
   std::error_code ignored;  // if the folder cannot be made, the first image says why
@@ -41,11 +59,7 @@ void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem:
     scan.sensor_serial = rig.camera().serial();
     return;
   }
-  scan = {.sensor_name = rig.sensor().name(),
-          .sensor_serial = rig.sensor().serial(),
-          .intrinsics = scaled(rig.sensor().intrinsics(), settings.depth_scale),
-          .platform_from_sensor = settings.platform_from_sensor,
-          .clip = settings.clip};
+  scan = scan_of_sensor(rig, settings);
   if (const auto map = folder / sensor_map_file; std::filesystem::exists(map)) {
     use_sensor_map(scan, map);
   }
@@ -54,7 +68,7 @@ void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem:
 bool has_sensor_of(const Scan& scan, const ScanSettings& settings, Rig& rig) {
   Scan of_rig = scan_of_rig(rig, settings);
   if (!of_rig.laser) {
-    of_rig.intrinsics = scaled(rig.sensor().intrinsics(), settings.depth_scale);
+    of_rig.intrinsics = to_intrinsics(rig.sensor(), scan.optics.has_value(), settings);
   }
   return have_same_sensor(of_rig, scan);
 }

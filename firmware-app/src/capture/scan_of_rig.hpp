@@ -17,6 +17,9 @@ Scan scan_of_rig(const Rig& rig, const ScanSettings& settings);
 ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& settings,
                                    const Limits& limits);
 
+/// Returns the part of a new scan by depth sensor that all its snapshots share. It has no map.
+Scan scan_of_sensor(Rig& rig, const ScanSettings& settings);
+
 /// Completes a new scan with the data that all its snapshots share.
 /// @param folder  the scan's, which may contain a sensor map
 void begin_scan(Scan& scan, const ScanSettings& settings, const std::filesystem::path& folder,

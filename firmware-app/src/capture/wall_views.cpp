@@ -9,7 +9,9 @@
 #include <utility>
 #include <vector>
 
+#include "calibration/optics_files.hpp"
 #include "calibration/sensor_map_files.hpp"
+#include "log.hpp"
 #include "octurn/png.hpp"
 #include "octurn/units.hpp"
 #include "sensor/new_folder.hpp"
@@ -72,6 +74,12 @@ WallView read_stored_view(const fs::path& folder) {
   return to_view(wall.intrinsics, read_wall_frame(folder, wall, 0));
 }
 
+void keep_map(const fs::path& data, std::string_view serial, SensorMap& map) {
+  map.serial = serial;
+  map.made = utc_text(std::chrono::system_clock::now(), rfc3339);
+  write_sensor_map(sensor_map_path(data, serial), map);
+}
+
 void keep_view(const fs::path& folder, std::string_view serial, const Intrinsics& lens,
                const DepthFrame& mean) {
   fs::remove_all(folder);
@@ -115,12 +123,29 @@ double next_wall(const fs::path& data, std::string_view serial) {
   return has_first ? second_wall : first_wall;
 }
 
+void remake_sensor_map(const fs::path& data, std::string_view serial) {
+  std::vector<WallView> views;
+  for (const StoredView& stored : find_views(wall_views_path(data, serial))) {
+    views.push_back(read_stored_view(stored.folder));
+  }
+  if (views.empty()) {
+    return;
+  }
+  SensorMapReport report = fit_sensor_map(views, optics_in_force(data, serial));
+  if (report.accepted) {
+    keep_map(data, serial, report.map);
+  } else {
+    log::warning("calibration", "the sensor's map is not made again: " + report.reason);
+  }
+}
+
 SensorMapReport add_wall(const fs::path& data, std::string_view serial, const WallView& view) {
   const DepthFrame mean = to_mean_frame(view);
   Intrinsics lens = view.intrinsics();
   lens.depth_unit = mean_unit;
   std::vector<WallView> views{to_view(lens, mean)};
-  SensorMapReport report = fit_sensor_map(views);
+  const std::optional<SensorOptics> optics = optics_in_force(data, serial);
+  SensorMapReport report = fit_sensor_map(views, optics);
   if (!report.accepted) {
     return report;
   }
@@ -135,13 +160,11 @@ SensorMapReport add_wall(const fs::path& data, std::string_view serial, const Wa
       views.push_back(std::move(other));
     }
   }
-  report = views.size() > 1 ? fit_sensor_map(views) : std::move(report);
+  report = views.size() > 1 ? fit_sensor_map(views, optics) : std::move(report);
   if (report.accepted) {
     std::ranges::for_each(outdated, [](const fs::path& old) { fs::remove_all(old); });
     keep_view(folder / std::to_string(std::lround(mm_from_metres(distance))), serial, lens, mean);
-    report.map.serial = serial;
-    report.map.made = utc_text(std::chrono::system_clock::now(), rfc3339);
-    write_sensor_map(sensor_map_path(data, serial), report.map);
+    keep_map(data, serial, report.map);
   }
   report.map.near = {};
   report.map.far = {};

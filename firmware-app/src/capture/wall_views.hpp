@@ -35,9 +35,15 @@ std::optional<WallView> look_at_wall(
 /// far one.
 double next_wall(const std::filesystem::path& data, std::string_view serial);
 
-/// Fits a sensor's map to a new wall view and to the stored ones at other distances, and stores map
-/// and view if the map is accepted. Then the new view replaces those within 0.1 m of its distance,
-/// or with other intrinsics.
+/// Fits a sensor's map to its stored wall views again, since its optics have changed: what these
+/// take out, the map must not correct again. Does nothing without stored views; keeps the old map
+/// if the new one is refused.
+/// @throws Error  as `add_wall`
+void remake_sensor_map(const std::filesystem::path& data, std::string_view serial);
+
+/// Fits a sensor's map, with its optics in force, to a new wall view and to the stored ones at
+/// other distances, and stores map and view if the map is accepted. Then the new view replaces
+/// those within 0.1 m of its distance, or with other intrinsics.
 ///
 /// @param data    the data folder
 /// @param serial  of the sensor; not empty

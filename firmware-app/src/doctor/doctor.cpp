@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "calibration/calibration_store.hpp"
+#include "calibration/optics_files.hpp"
 #include "doctor/machine_checks.hpp"
 #include "doctor/permission_checks.hpp"
 #include "doctor/sensor_checks.hpp"
@@ -72,6 +73,19 @@ Eigen::Isometry3d unscaled_pose(const ScanSettings& settings) {
   return pose;
 }
 
+/// Rectifies a sample's frames for the sensor's known optics, with which the calibration was made.
+SensorReading with_known_optics(SensorReading reading, const std::filesystem::path& data) {
+  auto* const sample = std::get_if<SensorSample>(&reading);
+  const auto optics = sample != nullptr ? optics_in_force(data, sample->serial) : std::nullopt;
+  if (optics) {
+    for (DepthFrame& frame : sample->frames) {
+      frame = rectified(std::move(frame), sample->intrinsics, *optics);
+    }
+    sample->intrinsics = rectified(sample->intrinsics, *optics);
+  }
+  return reading;
+}
+
 std::vector<Finding> check_machine(const DoctorInput& input) {
   const auto& root = input.root;
   const std::uint64_t largest = max_scan_bytes(input.config.scan);
@@ -107,7 +121,8 @@ DoctorInput doctor_input(const RigOptions& rig, const ConfigStore& settings,
 
 std::vector<Finding> run_checks(const DoctorInput& input, const SensorReading& reading) {
   std::vector<Finding> findings =
-      check_sensor(reading, input.config.scan.clip, unscaled_pose(input.config.scan),
+      check_sensor(with_known_optics(reading, input.config.data), input.config.scan.clip,
+                   unscaled_pose(input.config.scan),
                    first_line(input.root / "proc/device-tree/model").value_or(""));
   if (!input.rig.laser && is_on_usb(input.rig.sensor_uri)) {
     findings.push_back(check_usb(input.root));

@@ -13,7 +13,8 @@ constexpr std::size_t kept_frames = 10;  // as a scan takes at each stop
 
 /// @return nothing if `stop` is requested first
 std::optional<SensorSample> sample(DepthSensor& sensor, const std::stop_token& stop) {
-  SensorSample sample{.name = sensor.name(), .intrinsics = sensor.intrinsics()};
+  SensorSample sample{
+      .name = sensor.name(), .serial = sensor.serial(), .intrinsics = sensor.intrinsics()};
   std::optional<PacketCounts> before;
   for (int count = 0; count < first_frames + timed_frames; ++count) {
     std::optional<TimedFrame> timed = sensor.read(stop);

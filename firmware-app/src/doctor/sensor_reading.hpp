@@ -18,6 +18,7 @@ namespace octurn {
 /// Frames and properties of a sensor, taken for about two seconds.
 struct SensorSample {
   std::string name = {};
+  std::string serial = {};
   Intrinsics intrinsics = {};
   std::vector<std::chrono::steady_clock::time_point> times = {};  ///< of each frame
   std::optional<PacketCounts> packets = {};  ///< nothing if the sensor does not count them

@@ -13,6 +13,8 @@
 #include "build/colour_model.hpp"
 #include "build/merged_model.hpp"
 #include "calibration/lens_files.hpp"
+#include "calibration/optics_files.hpp"
+#include "capture/wall_views.hpp"
 #include "log.hpp"
 #include "octurn/error.hpp"
 #include "run/rebuild.hpp"
@@ -322,6 +324,18 @@ bool Scanner::forget_sensor_map() {
   }
   remove_sensor_map(store_.data(), serial);
   board_.clear_sensor_map();
+  return true;
+}
+
+bool Scanner::undo_optics() {
+  const std::lock_guard lock(scans_);
+  if (slot_.has_scan()) {
+    return false;
+  }
+  const std::string serial = sensor_serial();
+  octurn::undo_optics(store_.data(), serial);
+  remake_sensor_map(store_.data(), serial);
+  board_.set_optics(read_optics(store_.data(), serial), find_map_summary(store_.data(), serial));
   return true;
 }
 

@@ -195,6 +195,12 @@ class Scanner {
   /// @throws Error "not-found"  if it has none; "write-failed"
   bool forget_sensor_map();
 
+  /// Restores the optics before those in force, of the sensor that was opened last, and makes its
+  /// map with them.
+  /// @return false if a scan or a measurement runs
+  /// @throws Error "not-found"  if none are kept; "write-failed"
+  bool undo_optics();
+
   /// The sensor that is open, or was open last, for display.
   std::shared_ptr<const KnownSensor> known_sensor() const { return board_.known_sensor().get(); }
 

@@ -137,6 +137,14 @@ void StatusBoard::clear_sensor_map() {
   known_sensor_.update([](KnownSensor& sensor) { sensor.map.reset(); });
 }
 
+void StatusBoard::set_optics(std::vector<OpticsRecord> optics,
+                             std::optional<SensorMapSummary> map) {
+  known_sensor_.update([&](KnownSensor& sensor) {
+    sensor.optics = std::move(optics);
+    sensor.map = std::move(map);
+  });
+}
+
 void StatusBoard::set_lens(std::optional<KeptLens> lens) {
   known_sensor_.update([&](KnownSensor& sensor) { sensor.lens = lens; });
 }

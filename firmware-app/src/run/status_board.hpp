@@ -5,8 +5,10 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "calibration/lens_files.hpp"
+#include "calibration/optics_files.hpp"
 #include "calibration/sensor_map_files.hpp"
 #include "capture/calibration_turn.hpp"
 #include "capture/rig.hpp"
@@ -69,6 +71,8 @@ struct KnownSensor {
       {};                                    ///< when it opened; nullopt: closed
   std::optional<SensorMapSummary> map = {};  ///< nullopt: this machine has none of it
   std::optional<KeptLens> lens = {};         ///< stored lens of a camera; nullopt: none
+  /// Of a depth sensor: those in force, then the earlier ones; empty: as the sensor reports.
+  std::vector<OpticsRecord> optics = {};
 };
 
 /// A coarse mesh of the snapshots so far of the scan that was started last.
@@ -115,6 +119,8 @@ class StatusBoard {
 
   void set_camera_frame(DepthFrame frame, const Intrinsics& lens);
   void set_camera_picture(Picture picture);
+  /// Publishes the optics of the depth sensor, and the map that was made with them.
+  void set_optics(std::vector<OpticsRecord> optics, std::optional<SensorMapSummary> map);
   void set_calibration_run(CalibrationRun run);
   void set_known_sensor(KnownSensor sensor) { known_sensor_.set(std::move(sensor)); }
   void set_sensor_closed();

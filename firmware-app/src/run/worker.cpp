@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <memory>
 #include <span>
 #include <string>
 #include <utility>
@@ -11,8 +12,10 @@
 #include "build/merged_model.hpp"
 #include "build/pose_points.hpp"
 #include "calibration/lens_files.hpp"
+#include "calibration/optics_files.hpp"
 #include "calibration/sensor_map_files.hpp"
 #include "calibration/solve_pose.hpp"
+#include "capture/depth_scale.hpp"
 #include "capture/measure_laser_turn.hpp"
 #include "capture/scan_of_rig.hpp"
 #include "capture/wall_views.hpp"
@@ -123,17 +126,16 @@ PoseRecord to_record(const TurnReport& report, const ScanSettings& settings, Rig
   return record;
 }
 
-/// Reads the map of the sensor's depth error; nullopt if this machine has none of the frames' size.
+/// Reads the map of the sensor's depth error; null if this machine has none of the frames' size.
 /// @throws Error "scan-malformed"
-std::optional<SensorMap> find_sensor_map(const std::filesystem::path& data, std::string_view serial,
-                                         const Intrinsics& lens) {
+std::shared_ptr<const SensorMap> find_sensor_map(const std::filesystem::path& data,
+                                                 std::string_view serial, const Intrinsics& lens) {
   const std::filesystem::path file = sensor_map_path(data, serial);
   if (serial.empty() || !std::filesystem::exists(file)) {
-    return std::nullopt;
+    return nullptr;
   }
-  SensorMap map = read_sensor_map(file);
-  return map.width == lens.width && map.height == lens.height ? std::optional(std::move(map))
-                                                              : std::nullopt;
+  auto map = std::make_shared<const SensorMap>(read_sensor_map(file));
+  return map->width == lens.width && map->height == lens.height ? map : nullptr;
 }
 
 /// Describes the outcome of a run, for the log.
@@ -374,6 +376,7 @@ void Worker::attempt(const std::stop_token& stop) {
     rig_.set_object_pose(static_cast<int>(to_pose_index(ports_.store, job_)));
     use_lens(first_scan());
     use_pose();
+    use_optics(first_scan(), job_.settings);
     if (job_.snapshots_done == 0) {
       expect_same_sensor();
       if (rig_.laser() == nullptr) {
@@ -470,14 +473,32 @@ void Worker::keep_calibration(const ScanSolution& solution) {
   try {
     ports_.store.save(job_);
     if (solution.replaces_told) {
-      ports_.calibration.set(rig_.laser() == nullptr
-                                 ? to_record(report, PoseOrigin::scan, job_.settings.depth_scale)
-                                 : to_record(report, PoseOrigin::scan, rig_.camera().serial(),
-                                             solution.solved.lasers));
+      const PoseRecord record =
+          rig_.laser() == nullptr
+              ? to_record(report, PoseOrigin::scan, job_.settings.depth_scale)
+              : to_record(report, PoseOrigin::scan, rig_.camera().serial(), solution.solved.lasers);
+      ports_.calibration.set(record);
+      keep_optics(report, {.origin = OpticsOrigin::scan, .at = record.at});
     }
   } catch (...) {
     log::warning("scanner", current_failure().detail);
   }
+}
+
+/// Keeps optics with which a solved pose holds: later scans of this sensor begin with both.
+/// @param record  without the optics
+void Worker::keep_optics(const CalibrationReport& report, OpticsRecord record) try {
+  if (!report.optics_differ || rig_.sensor().serial().empty()) {
+    return;
+  }
+  const std::string serial = rig_.sensor().serial();
+  record.optics = *report.optics;
+  octurn::keep_optics(ports_.store.data(), serial, record);
+  remake_sensor_map(ports_.store.data(), serial);
+  introduced_.reset();
+  introduce_sensor();
+} catch (...) {
+  log::warning("calibration", current_failure().detail);
 }
 
 void Worker::show_rebuilt(int snapshots) {
@@ -696,7 +717,9 @@ void Worker::measure(CalibrationRun& run, const ScanSettings& settings,
   }
   const TurnReport& report = *run.report;
   if (report.calibration.accepted) {
-    ports_.calibration.set(to_record(report, settings, rig_));
+    const PoseRecord record = to_record(report, settings, rig_);
+    ports_.calibration.set(record);
+    keep_optics(report.calibration, {.origin = OpticsOrigin::turn, .at = record.at});
   }
   run.state =
       report.calibration.accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
@@ -711,10 +734,10 @@ std::optional<TurnReport> Worker::measure_turn(const ScanSettings& settings,
     use_pose();
     return measure_laser_turn(settings, ports_.store.data(), limits_.threads, rig_, stop, observer);
   }
-  const std::optional<SensorMap> map =
+  use_optics("", settings);
+  const auto map =
       find_sensor_map(ports_.store.data(), rig_.sensor().serial(), rig_.sensor().intrinsics());
-  return octurn::measure_turn(settings, map ? &*map : nullptr, limits_.threads, rig_, stop,
-                              observer);
+  return octurn::measure_turn(settings, map, limits_.threads, rig_, stop, observer);
 }
 
 /// Reads frames of a wall, and stores the sensor's map if it is accepted.
@@ -760,6 +783,7 @@ void Worker::introduce_sensor() {
                     .since = since};
   try {
     known.map = find_map_summary(ports_.store.data(), known.serial);
+    known.optics = read_optics(ports_.store.data(), known.serial);
     known.lens = is_camera ? octurn::find_lens(ports_.store.data(), known.serial) : std::nullopt;
   } catch (...) {
     log::warning("calibration", current_failure().detail);
@@ -842,6 +866,21 @@ void Worker::use_lens(const std::string& begun) {
     }
   }
   rig_.use_lens(lens);
+}
+
+/// Sets the optics of the rig's depth sensor, with the depth scale.
+/// @param begun  id of a scan whose optics are used, known or not: snapshots of one scan have one
+///               sensor; empty: those in force
+void Worker::use_optics(const std::string& begun, const ScanSettings& settings) {
+  if (rig_.laser() != nullptr) {
+    return;
+  }
+  if (!begun.empty()) {
+    rig_.use_optics(read_scan(ports_.store.folder(begun)).optics);
+    return;
+  }
+  const auto kept = optics_in_force(ports_.store.data(), rig_.sensor().serial());
+  rig_.use_optics(kept ? std::optional(scaled(*kept, settings.depth_scale)) : std::nullopt);
 }
 
 /// Sets the pose of the rig's camera and the planes of its lasers: those in force for this camera,

@@ -8,6 +8,7 @@
 
 #include "calibration/calibration_store.hpp"
 #include "calibration/lens_files.hpp"
+#include "calibration/optics_files.hpp"
 #include "capture/calibration_turn.hpp"
 #include "latest.hpp"
 #include "run/command_slot.hpp"
@@ -78,6 +79,7 @@ class Worker {
   void show_job();
   void save_progress();
   void keep_calibration(const ScanSolution& solution);
+  void keep_optics(const CalibrationReport& report, OpticsRecord record);
   void show_rebuilt(int snapshots);
   std::optional<TurnReport> measure_turn(const ScanSettings& settings, const std::stop_token& stop,
                                          const ScanObserver& observer);
@@ -87,6 +89,7 @@ class Worker {
   std::string first_scan() const;
   void use_lens(const std::string& begun);
   void use_pose();
+  void use_optics(const std::string& begun, const ScanSettings& settings);
   void carry_out(CalibrationRun run, const std::function<void(CalibrationRun& run)>& measurement);
   void introduce_sensor();
   void close_device(const Failure& failure);

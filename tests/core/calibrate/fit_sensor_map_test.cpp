@@ -142,6 +142,41 @@ TEST(FitSensorMap, NamesTheWallThatIsNone) {
   EXPECT_EQ(report.walls.size(), 2U);
 }
 
+/// Root mean square of the difference of two maps' errors, steps of disparity.
+double difference(const SensorMap& one, const SensorMap& other) {
+  double squares = 0;
+  for (std::size_t i = 0; i < one.near.size(); ++i) {
+    const double off = static_cast<double>(one.near[i] - other.near[i]);
+    squares += off * off / static_cast<double>(one.near.size());
+  }
+  return std::sqrt(squares) / disparity_unit;
+}
+
+// A lens's distortion bends a slanted wall. Where optics take it out, a map must not do so again.
+TEST(FitSensorMap, LeavesDistortionToKnownOptics) {
+  const SensorOptics optics{.fx = 590, .fy = 590, .cx = 331, .cy = 246, .k1 = -0.12, .k2 = 0.02};
+  const double tangent = std::tan(radians_from_degrees(14));
+  const auto seen = [&](int u, int v) {
+    const Eigen::Vector2d shown((u - optics.cx) / optics.fx, (v - optics.cy) / optics.fy);
+    Eigen::Vector2d ray = shown;  // the fixed point of r = shown / (1 + k1 r^2 + k2 r^4)
+    for (int i = 0; i < 60; ++i) {
+      const double square = ray.squaredNorm();
+      ray = shown / (1 + square * (optics.k1 + square * optics.k2));
+    }
+    return (1 - tangent * ray.x()) / 0.66;
+  };
+  const std::vector<WallView> views{wall_view(seen)};
+  const SensorMapReport known = fit_sensor_map(views, optics);
+  const SensorMapReport unknown = fit_sensor_map(views);
+  ASSERT_TRUE(known.accepted) << known.reason;
+  EXPECT_EQ(known.map.optics, optics);
+  EXPECT_FALSE(unknown.map.optics);
+  const SensorMap pattern = fit({wall_view(flat_wall(0.66, 0))}).map;
+  // The pattern changes with distance, which is up to 10 cm different at the sides.
+  EXPECT_LT(difference(known.map, pattern), 0.15);
+  EXPECT_GT(difference(unknown.map, pattern), 0.4);
+}
+
 TEST(FitSensorMap, TakesViewsOfOneSensor) {
   EXPECT_THROW(fit({}), std::invalid_argument);
   EXPECT_THROW(fit({wall_view(flat_wall(0.66, 0)), WallView({.width = 4, .height = 3})}),

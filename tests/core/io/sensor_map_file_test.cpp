@@ -47,6 +47,13 @@ TEST(SensorMapFile, ComesBackAsItWasWritten) {
   EXPECT_EQ(read.after, 0.0005);
 }
 
+TEST(SensorMapFile, RemembersTheOpticsThatItWasMadeWith) {
+  SensorMap map = small_map();
+  EXPECT_FALSE(decode(encode_sensor_map(map)).optics);
+  map.optics = SensorOptics{.fx = 590.25, .fy = 589.5, .k1 = -0.0625, .depth_scale = 1.012};
+  EXPECT_EQ(decode(encode_sensor_map(map)).optics, map.optics);
+}
+
 TEST(SensorMapFile, HoldsAMapOfOneDistance) {
   SensorMap map = small_map();
   map.far.clear();

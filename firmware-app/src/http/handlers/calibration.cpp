@@ -32,6 +32,20 @@ json lens_json(const App& app, const std::optional<KeptLens>& kept) {
                        : json();
 }
 
+/// The kept optics of a depth sensor: those in force, and the earlier ones, newest first; null if
+/// there are none.
+json optics_json(const std::vector<OpticsRecord>& records) {
+  if (records.empty()) {
+    return nullptr;
+  }
+  json object = to_json(records.front());
+  object["history"] = json::array();
+  for (std::size_t i = 1; i < records.size(); ++i) {
+    object["history"].push_back(to_json(records[i]));
+  }
+  return object;
+}
+
 /// The serial number of the known camera with lasers; empty for another sensor.
 std::string camera_serial(const App& app) {
   return app.rig.laser ? app.scanner.sensor_serial() : "";
@@ -53,6 +67,7 @@ Response send_calibration(App& app, int status) {
   body["sensor_map"] = sensor->map ? to_json(*sensor->map) : json();
   body["sensor_on_s"] = sensor->since ? json(std::floor(open.count())) : json();
   body["lens"] = lens_json(app, sensor->lens);
+  body["optics"] = optics_json(sensor->optics);
   body["run"] = *run ? to_json(**run) : json();
   return json_response(body, status);
 }
@@ -136,13 +151,14 @@ void start_lens(App& app, JsonObject& keys) {
   }
 }
 
-/// @return whether the body asks for the sensor's map to be removed
-bool is_without_map(JsonObject& keys) {
-  const auto map = keys.value("sensor_map");
-  if (map && !map->json().is_null()) {
-    map->refuse("null, which removes it");
+/// @return whether the body has the key
+/// @throws Error "bad-settings"  if its value is not null
+bool has_null(JsonObject& keys, std::string_view key, const std::string& meaning) {
+  const auto value = keys.value(key);
+  if (value && !value->json().is_null()) {
+    value->refuse("null, which " + meaning);
   }
-  return map.has_value();
+  return value.has_value();
 }
 
 }  // namespace
@@ -153,19 +169,21 @@ Response change_calibration(App& app, const Request& request) {
   const json body = parse_body(request);
   JsonObject keys(body, ErrorCode::bad_settings, "");
   const PoseChange change = to_change(keys);
-  const bool forget_map = is_without_map(keys);
+  const bool forget_map = has_null(keys, "sensor_map", "removes it");
+  const bool undo_optics = has_null(keys, "optics", "restores those before them");
   const LensChange lens = to_lens_change(keys);
   keys.refuse_unread();
   if (change.scale && app.rig.laser) {
     keys.at("scale").refuse("nothing of a rig with lasers: it measures no depth");
   }
   const bool is_change = change.scale || change.platform_from_sensor || change.is_settings_pose;
-  if (!is_change && !forget_map && lens == LensChange::none) {
+  if (!is_change && !forget_map && !undo_optics && lens == LensChange::none) {
     throw Error(ErrorCode::bad_settings, "the body changes nothing",
-                "It takes platform_from_sensor, scale, sensor_map and lens.");
+                "It takes platform_from_sensor, scale, sensor_map, optics and lens.");
   }
   carry_out(app, lens);
-  if (forget_map && !app.scanner.forget_sensor_map()) {
+  if ((forget_map && !app.scanner.forget_sensor_map()) ||
+      (undo_optics && !app.scanner.undo_optics())) {
     refuse_busy();
   }
   if (is_change) {
@@ -241,13 +259,19 @@ Response send_points(App& app) {
     throw Error(ErrorCode::not_found, "a camera with lasers measures no depth",
                 "GET /api/v1/preview/depth.png shows what it sees.");
   }
+  const std::vector<OpticsRecord>& known = app.scanner.known_sensor()->optics;
   const double scale = app.scanner.calibration().in_force({}).depth_scale;
-  const Intrinsics lens = scaled(camera->lens, scale);
+  Intrinsics lens = scaled(camera->lens, scale);
+  DepthFrame frame = camera->frame;
+  if (!known.empty()) {
+    frame = rectified(std::move(frame), lens, known.front().optics.value);
+    lens = rectified(lens, known.front().optics.value);
+  }
   json points = json::array();
-  for (int v = 0; v < camera->frame.height; v += point_step) {
-    for (int u = 0; u < camera->frame.width; u += point_step) {
-      const auto pixel = static_cast<std::size_t>(v * camera->frame.width + u);
-      const double z = camera->frame.depth[pixel] * lens.depth_unit;
+  for (int v = 0; v < frame.height; v += point_step) {
+    for (int u = 0; u < frame.width; u += point_step) {
+      const auto pixel = static_cast<std::size_t>(v * frame.width + u);
+      const double z = frame.depth[pixel] * lens.depth_unit;
       const auto mm = [](double metres) { return std::round(mm_from_metres(metres) * 10) / 10; };
       if (z > 0) {
         const Eigen::Vector3d point = z * pixel_ray(lens, u, v);

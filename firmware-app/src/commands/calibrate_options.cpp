@@ -1,5 +1,7 @@
 #include "commands/calibrate_options.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include "commands/model_commands.hpp"
 #include "commands/options.hpp"
 

@@ -1,12 +1,15 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "settings/field.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace octurn {
 

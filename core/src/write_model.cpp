@@ -9,43 +9,50 @@
 namespace octurn {
 namespace {
 
-/// Streams a surface to `sink`, and measures it on the way.
+/// Streams a surface to `sink`, and measures its facets on the way.
 /// @param surface  streams all facets to the sink that it is called with, and counts them
 template <typename Surface>
-ModelReport measured(const Surface& surface, const FacetSink& sink) {
+ModelReport measure_facets(const Surface& surface, const FacetSink& sink) {
   MeshCheck check;
   const SurfaceCount count = surface([&](std::span<const Facet> facets) {
     check.add(facets);
     sink(facets);
   });
-  expect_facets(count);
   return make_report(count, check);
 }
 
-template <typename Surface>
-ModelReport write_stl(const Surface& surface, const std::filesystem::path& file) {
+/// Writes the facets that `model` streams to the sink that it is called with, and reports.
+template <typename Model>
+ModelReport write_stl(const Model& model, const std::filesystem::path& file) {
   StlFile stl(file);
-  const ModelReport report =
-      measured(surface, [&](std::span<const Facet> facets) { stl.write(facets); });
+  ModelReport report = model([&](std::span<const Facet> facets) { stl.write(facets); });
+  expect_facets(report.triangles);
   stl.commit();
   return report;
 }
 
 }  // namespace
 
-void expect_facets(const SurfaceCount& count) {
-  if (count.facets == 0) {
+void expect_facets(std::uint64_t facets) {
+  if (facets == 0) {
     throw Error(ErrorCode::model_empty, "no surface in the clip box: there is nothing to write",
                 "Stand the object on the platform's middle, and check the scanned space and the "
                 "calibration.");
   }
 }
 
+ModelReport Reconstructor::measured_surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                                            const std::stop_token& stop) {
+  return measure_facets([&](const FacetSink& take) { return surface(snapshots, take, stop); },
+                        sink);
+}
+
 std::optional<ModelReport> write_model(Reconstructor& reconstructor,
                                        const SnapshotSource& snapshots, const FacetSink& sink,
                                        const std::stop_token& stop) try {
-  return measured(
-      [&](const FacetSink& take) { return reconstructor.surface(snapshots, take, stop); }, sink);
+  ModelReport report = reconstructor.measured_surface(snapshots, sink, stop);
+  expect_facets(report.triangles);
+  return report;
 } catch (const Stopped&) {
   return std::nullopt;
 }
@@ -55,14 +62,20 @@ std::optional<ModelReport> write_model(Reconstructor& reconstructor,
                                        const std::filesystem::path& file,
                                        const std::stop_token& stop) try {
   return write_stl(
-      [&](const FacetSink& take) { return reconstructor.surface(snapshots, take, stop); }, file);
+      [&](const FacetSink& sink) { return reconstructor.measured_surface(snapshots, sink, stop); },
+      file);
 } catch (const Stopped&) {
   return std::nullopt;
 }
 
 ModelReport join_tiles(std::span<const std::filesystem::path> files,
                        const std::filesystem::path& model, const std::stop_token& stop) {
-  return write_stl([&](const FacetSink& take) { return join_tiles(files, take, stop); }, model);
+  return write_stl(
+      [&](const FacetSink& sink) {
+        return measure_facets([&](const FacetSink& take) { return join_tiles(files, take, stop); },
+                              sink);
+      },
+      model);
 }
 
 }  // namespace octurn

@@ -18,6 +18,8 @@ class ProgressBar {
   /// Redraws the bar. @param doing  label after the numbers
   void show(int done, int total, std::string_view doing);
 
+  bool on_terminal() const { return on_terminal_; }
+
  private:
   bool on_terminal_;
 };

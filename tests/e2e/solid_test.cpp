@@ -84,6 +84,15 @@ TEST_F(SolidCommand, SaysWhyAModelIsNotGood) {
   })) << quality;
 }
 
+TEST_F(SolidCommand, FindsNoVerdictThatNobodyReads) {
+  write_ball_scan(scan_, 8);
+  Program program(
+      command({"--leaf-size-mm", "2", "--clip-mm", "-140", "-140", "2", "140", "140", "70"}));
+  EXPECT_EQ(program.wait(), 0) << program.errors();
+  EXPECT_EQ(program.errors(), "");
+  EXPECT_TRUE(fs::exists(output_));
+}
+
 TEST_F(SolidCommand, CallsAModelBadOfWhichHalfTheStopsAreMissing) {
   write_ball_scan(scan_, 8);
   Scan half = read_scan(scan_);

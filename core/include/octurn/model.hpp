@@ -43,7 +43,10 @@ struct ModelReport {
   double filled_share = 0;  ///< of the area, made by hole filling, 0 to 1
   double unseen_share = 0;  ///< the same without the base, the facets in z = 0
   ModelPlaces places = {};
-  /// Whether every directed edge is met by its opposite, corners compared bit by bit.
+  /// Whether the surface is closed. Of the method `solid` every directed edge is compared with its
+  /// opposite, corners bit by bit; of `intersection` the sides of neighbouring bricks of leaves,
+  /// inside which the surface is closed by construction. An open one is missed with a chance of
+  /// 2^-64.
   bool watertight = false;
   double volume = 0.0;  ///< cubic metres; right only if watertight
   DroppedParts dropped = {};
@@ -52,7 +55,7 @@ struct ModelReport {
 };
 
 /// @throws Error "empty"  if there is no facet
-void expect_facets(const SurfaceCount& count);
+void expect_facets(std::uint64_t facets);
 
 /// Streams the surface to `sink`, and measures it on the way.
 ///

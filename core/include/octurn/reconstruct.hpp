@@ -132,6 +132,8 @@ struct SurfaceCount {
   std::uint64_t dropped_leaves = 0;  ///< their voxels
 };
 
+struct ModelReport;
+
 /// A reconstruction in progress: snapshots are added, then the surface is drawn. Not thread-safe;
 /// each call runs and joins its own threads, as many as the options say.
 ///
@@ -165,6 +167,11 @@ class Reconstructor {
   /// @throws Error "memory-limit"  if more memory is needed
   virtual SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink,
                                const std::stop_token& stop = {}) = 0;
+
+  /// Streams the surface as `surface` does, and measures it on the way, as `judge` needs it.
+  /// @throws  as `surface`
+  virtual ModelReport measured_surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                                       const std::stop_token& stop = {});
 
   /// Counts the leaves and facets of `surface`. @throws  as `surface`
   virtual SurfaceCount count(const SnapshotSource& snapshots, const std::stop_token& stop = {}) = 0;

@@ -9,12 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "bennett/leaf_figures.hpp"
 #include "bennett/marching_tetrahedra.hpp"
 #include "bennett/triangulate.hpp"
 #include "bennett/voxelize_triangle.hpp"
 #include "depth/back_project.hpp"
+#include "depth/depth_limits.hpp"
 #include "depth/find_placement.hpp"
+#include "depth/seen_pixels.hpp"
 #include "octurn/error.hpp"
+#include "octurn/model.hpp"
 #include "octurn/units.hpp"
 #include "parallel/fork_join.hpp"
 #include "voxel/checked_levels.hpp"
@@ -67,6 +71,20 @@ Octree octree_for(const ReconstructOptions& options) {
   return {options.root_size, options.level.value_or(leaf_level), octree_bytes(options)};
 }
 
+/// Calls `visit` for bands of rows of the pixels that see a box, one below the other: the points of
+/// a whole image take 3.7 MB. The last row of a band is the first of the next.
+template <typename Visit>
+void for_each_band(const Snapshot& snapshot, const Box& box, Visit visit) {
+  constexpr int rows = 32;
+  check_size(snapshot.frame, snapshot.intrinsics, "intersection");
+  const PixelRectangle all = seen_pixels(snapshot, box);
+  PixelRectangle band = all;
+  for (; band.top + 1 < all.bottom; band.top += rows) {
+    band.bottom = std::min(all.bottom, band.top + rows + 1);
+    visit(band);
+  }
+}
+
 /// The leaves that the surface of a slab depends on: its own, and the lowest of the layer above it.
 LeafLayers leaf_layers(const BrickLayers& slab) {
   return {.low = slab.low * Brick::side, .high = slab.end * Brick::side};
@@ -115,9 +133,11 @@ void BennettReconstructor::voxelize(const Snapshot& snapshot, Octree& octree,
     for_each_triangle(grid.points, strip.to_next, threshold, sink);
   }
   if (snapshot.strips.empty()) {
-    PointGrid grid = world_points(snapshot);
-    clip_points(grid);
-    triangulate(grid, threshold, sink);
+    for_each_band(snapshot, options_.clip, [&](const PixelRectangle& band) {
+      PointGrid grid = world_points(snapshot, band);
+      clip_points(grid);
+      triangulate(grid, threshold, sink);
+    });
   }
 }
 
@@ -218,19 +238,46 @@ void BennettReconstructor::for_each_slab(const SnapshotSource& snapshots,
   }
 }
 
+/// Streams the surface of a slab, and adds it to `count`.
+void BennettReconstructor::draw(const BrickLayers& slab, const FacetSink& sink,
+                                const std::stop_token& stop, SurfaceCount& count) const {
+  throw_if_stopped(stop);
+  count.leaves += octree_.leaf_count(slab.low, slab.end);
+  marching_tetrahedra(octree_, slab, options_.threads, [&](std::span<const Facet> facets) {
+    throw_if_stopped(stop);
+    count.facets += facets.size();
+    sink(facets);
+  });
+}
+
 SurfaceCount BennettReconstructor::surface(const SnapshotSource& snapshots, const FacetSink& sink,
                                            const std::stop_token& stop) {
   SurfaceCount count;
-  for_each_slab(snapshots, stop, [&](const BrickLayers& slab) {
-    throw_if_stopped(stop);
-    count.leaves += octree_.leaf_count(slab.low, slab.end);
-    marching_tetrahedra(octree_, slab, options_.threads, [&](std::span<const Facet> facets) {
-      throw_if_stopped(stop);
-      count.facets += facets.size();
-      sink(facets);
-    });
-  });
+  for_each_slab(snapshots, stop, [&](const BrickLayers& slab) { draw(slab, sink, stop, count); });
   return count;
+}
+
+ModelReport BennettReconstructor::measured_surface(const SnapshotSource& snapshots,
+                                                   const FacetSink& sink,
+                                                   const std::stop_token& stop) {
+  SurfaceCount count;
+  LeafFigures figures(octree_);
+  for_each_slab(snapshots, stop, [&](const BrickLayers& slab) {
+    draw(slab, sink, stop, count);
+    figures.add(octree_, slab);
+  });
+  if (count.facets == 0) {
+    return {};
+  }
+  const Box bounds = figures.bounds();
+  return {.leaves = count.leaves,
+          .triangles = count.facets,
+          .bytes = stl_bytes(count.facets),
+          .places = {.surface = std::make_shared<SurfaceCells>(figures.surface())},
+          .watertight = figures.closed(),
+          .volume = figures.volume(),
+          .size = bounds.max - bounds.min,
+          .bottom = bounds.min.z()};
 }
 
 SurfaceCount BennettReconstructor::count(const SnapshotSource& snapshots,

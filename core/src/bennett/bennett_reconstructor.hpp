@@ -21,6 +21,8 @@ class BennettReconstructor final : public Reconstructor {
   void add(const SnapshotSource& snapshots, const std::stop_token& stop = {}) override;
   SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink,
                        const std::stop_token& stop = {}) override;
+  ModelReport measured_surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                               const std::stop_token& stop = {}) override;
   SurfaceCount count(const SnapshotSource& snapshots, const std::stop_token& stop = {}) override;
   void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink,
                const std::stop_token& stop = {}) const override;
@@ -33,6 +35,8 @@ class BennettReconstructor final : public Reconstructor {
   void merge(Octree& other);
   void begin_slab(const BrickLayers& slab, const SnapshotSource& snapshots,
                   const std::stop_token& stop);
+  void draw(const BrickLayers& slab, const FacetSink& sink, const std::stop_token& stop,
+            SurfaceCount& count) const;
   template <typename Visit>
   void for_each_slab(const SnapshotSource& snapshots, const std::stop_token& stop, Visit visit);
 

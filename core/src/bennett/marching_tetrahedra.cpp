@@ -1,7 +1,6 @@
 #include "bennett/marching_tetrahedra.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <memory>
 #include <optional>
 #include <utility>
@@ -14,74 +13,6 @@
 
 namespace octurn {
 namespace {
-
-/// The bricks of one layer of an octree, and those of the layer above that have leaves at their
-/// bottom, which is all that a slab keeps of them.
-std::vector<PlacedBrick> corner_bricks(const Octree& octree, int layer) {
-  std::vector<PlacedBrick> bricks;
-  for (int up = 0; up < 2; ++up) {
-    octree.for_each_brick(layer + up, [&](const Index3& position, const Brick& brick) {
-      if (up == 0 || brick.layers[0] != 0) {
-        bricks.push_back({position, &brick});
-      }
-    });
-  }
-  return bricks;
-}
-
-PseudoVoxelLayer pseudo_voxels(const Octree& octree, int layer) {
-  return {layer, corner_bricks(octree, layer)};
-}
-
-/// The corners (x, y) = (0, 0), (1, 0), (0, 1), (1, 1) of 8 x 8 pseudo-voxels on one layer of
-/// leaves.
-using CornerLayer = std::array<std::uint64_t, 4>;
-
-/// @param bricks  the four that meet along z
-CornerLayer corner_layer(const std::array<const Brick*, 4>& bricks, std::size_t z) {
-  constexpr std::uint64_t first_column = 0x0101010101010101;
-  const auto shifted_x = [](std::uint64_t row, std::uint64_t next) {
-    return (row >> 1 & ~(first_column << 7)) | (next & first_column) << 7;
-  };
-  const auto shifted_y = [](std::uint64_t layer, std::uint64_t next) {
-    return layer >> 8 | next << 56;
-  };
-  const std::uint64_t here = bricks[0]->layers[z];
-  const std::uint64_t right = bricks[1]->layers[z];
-  const std::uint64_t behind = bricks[2]->layers[z];
-  const std::uint64_t across = bricks[3]->layers[z];
-  const std::uint64_t x = shifted_x(here, right);
-  return {here, x, shifted_y(here, behind), shifted_y(x, shifted_x(behind, across))};
-}
-
-/// Calls `visit(x, y, z, pattern)` for the pseudo-voxels of a pseudo-voxel brick that the surface
-/// crosses.
-template <typename Visit>
-void for_each_mixed(const PseudoVoxelBrick& brick, Visit visit) {
-  const std::array<const Brick*, 4> lower{brick.bricks[0], brick.bricks[1], brick.bricks[2],
-                                          brick.bricks[3]};
-  const std::array<const Brick*, 4> upper{brick.bricks[4], brick.bricks[5], brick.bricks[6],
-                                          brick.bricks[7]};
-  CornerLayer above = corner_layer(lower, 0);
-  for (int z = 0; z < Brick::side; ++z) {
-    const CornerLayer below = above;
-    above = z + 1 < Brick::side ? corner_layer(lower, static_cast<std::size_t>(z + 1))
-                                : corner_layer(upper, 0);
-    const std::uint64_t any =
-        below[0] | below[1] | below[2] | below[3] | above[0] | above[1] | above[2] | above[3];
-    const std::uint64_t all =
-        below[0] & below[1] & below[2] & below[3] & above[0] & above[1] & above[2] & above[3];
-    for (std::uint64_t mixed = any & ~all; mixed != 0; mixed &= mixed - 1) {
-      const int bit = std::countr_zero(mixed);
-      std::size_t pattern = 0;
-      for (std::size_t corner = 0; corner < 4; ++corner) {
-        pattern |= (below[corner] >> bit & 1) << corner | (above[corner] >> bit & 1)
-                                                              << (corner + 4);
-      }
-      visit(bit % Brick::side, bit / Brick::side, z, pattern);
-    }
-  }
-}
 
 /// Millimetres of the half-leaf positions of one pseudo-voxel brick, on each axis.
 struct HalfStepPositions {
@@ -122,10 +53,6 @@ void append_facets(const BrickFrame& frame, const PseudoVoxelBrick& brick,
   });
 }
 
-/// The first layer of pseudo-voxels of a slab. At the root's bottom it is the layer below the root,
-/// in which the surface is closed.
-int first_layer(const BrickLayers& layers) { return layers.low == 0 ? -1 : layers.low; }
-
 /// Some pseudo-voxel bricks of a layer, which they keep alive.
 struct PseudoVoxelPiece {
   std::shared_ptr<const PseudoVoxelLayer> layer;
@@ -140,7 +67,7 @@ class PieceSource {
       : octree_(octree), next_(first_layer(layers)), end_(layers.end) {}
 
   std::optional<PseudoVoxelPiece> operator()() {
-    constexpr std::size_t max_bricks = 8;
+    constexpr std::size_t max_bricks = 2;
     while (rest_.empty() && next_ < end_) {
       layer_ = std::make_shared<const PseudoVoxelLayer>(pseudo_voxels(octree_, next_++));
       rest_ = layer_->bricks();

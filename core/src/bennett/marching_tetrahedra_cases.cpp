@@ -55,6 +55,7 @@ void add_tetrahedron(TetrahedraCase& surface, const std::array<Corner, 4>& tetra
   }
   if (ins == 1) {
     add_facet(surface, middle(in[0], out[0]), middle(in[0], out[1]), middle(in[0], out[2]), in[0]);
+    --surface.excess;
   } else if (ins == 2) {
     const HalfSteps a = middle(in[0], out[0]);
     const HalfSteps c = middle(in[1], out[1]);
@@ -62,6 +63,7 @@ void add_tetrahedron(TetrahedraCase& surface, const std::array<Corner, 4>& tetra
     add_facet(surface, a, c, middle(in[1], out[0]), in[1]);
   } else if (ins == 3) {
     add_facet(surface, middle(in[0], out[0]), middle(in[1], out[0]), middle(in[2], out[0]), in[0]);
+    ++surface.excess;
   }
 }
 

@@ -20,6 +20,9 @@ struct TetrahedraCase {
   static constexpr std::size_t max_facets = 12;  // two in each of six tetrahedra
   std::array<CaseFacet, max_facets> facets = {};
   std::size_t count = 0;
+  /// The volume inside, beyond n/4 of each tetrahedron with n of its corners inside, in eighths of
+  /// a tetrahedron: tetrahedra cut in the middles of their edges hold 0, 1/8, 1/2, 7/8 and 1.
+  int excess = 0;
 };
 
 /// Marching Tetrahedra for all 256 patterns, on the six tetrahedra that share the diagonal from

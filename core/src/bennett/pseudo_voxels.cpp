@@ -11,6 +11,20 @@ namespace {
 
 constexpr Brick no_leaves{};
 
+/// The bricks of one layer of an octree, and those of the layer above that have leaves at their
+/// bottom, which is all that a slab keeps of them.
+std::vector<PlacedBrick> corner_bricks(const Octree& octree, int layer) {
+  std::vector<PlacedBrick> bricks;
+  for (int up = 0; up < 2; ++up) {
+    octree.for_each_brick(layer + up, [&](const Index3& position, const Brick& brick) {
+      if (up == 0 || brick.layers[0] != 0) {
+        bricks.push_back({position, &brick});
+      }
+    });
+  }
+  return bricks;
+}
+
 }  // namespace
 
 /// Bricks contributing corners to one layer's pseudo-voxels: those of the layer itself and of the
@@ -87,6 +101,10 @@ void PseudoVoxelLayer::add(const CornerBricks& bricks, const Index3& position, i
     added.bricks[static_cast<std::size_t>(i)] = brick != nullptr ? brick : &no_leaves;
   }
   bricks_.push_back(added);
+}
+
+PseudoVoxelLayer pseudo_voxels(const Octree& octree, int layer) {
+  return {layer, corner_bricks(octree, layer)};
 }
 
 void PseudoVoxelLayer::sort_by_rows() {

@@ -9,6 +9,10 @@
 namespace octurn {
 
 PointGrid world_points(const Snapshot& snapshot) {
+  return world_points(snapshot, {.right = snapshot.frame.width, .bottom = snapshot.frame.height});
+}
+
+PointGrid world_points(const Snapshot& snapshot, const PixelRectangle& pixels) {
   const DepthFrame& frame = snapshot.frame;
   const Intrinsics& intrinsics = snapshot.intrinsics;
   check_size(frame, intrinsics, "world_points");
@@ -19,19 +23,21 @@ PointGrid world_points(const Snapshot& snapshot) {
   const Eigen::Matrix3f rotation = snapshot.object_from_sensor.linear().cast<float>();
   const Eigen::Vector3f centre = snapshot.object_from_sensor.translation().cast<float>();
   const auto unit = static_cast<float>(intrinsics.depth_unit);
-  std::vector<Eigen::Vector3f> column_rays(static_cast<std::size_t>(intrinsics.width));
-  for (int u = 0; u < intrinsics.width; ++u) {
-    const auto x = static_cast<float>((u - intrinsics.cx) / intrinsics.fx);
+  PointGrid grid{
+      .width = pixels.right - pixels.left, .height = pixels.bottom - pixels.top, .points = {}};
+  std::vector<Eigen::Vector3f> column_rays(static_cast<std::size_t>(grid.width));
+  for (int column = 0; column < grid.width; ++column) {
+    const auto x = static_cast<float>((pixels.left + column - intrinsics.cx) / intrinsics.fx);
     for (int axis = 0; axis < 3; ++axis) {
-      column_rays[static_cast<std::size_t>(u)][axis] = unit * (rotation(axis, 0) * x);
+      column_rays[static_cast<std::size_t>(column)][axis] = unit * (rotation(axis, 0) * x);
     }
   }
 
-  PointGrid grid{.width = intrinsics.width, .height = intrinsics.height, .points = {}};
-  grid.points.resize(frame.depth.size());
+  grid.points.resize(column_rays.size() * static_cast<std::size_t>(grid.height));
   auto point = grid.points.begin();
-  auto depth = frame.depth.begin();
-  for (int v = 0; v < intrinsics.height; ++v) {
+  for (int v = pixels.top; v < pixels.bottom; ++v) {
+    auto depth =
+        frame.depth.begin() + static_cast<std::ptrdiff_t>(v) * intrinsics.width + pixels.left;
     const auto y = static_cast<float>((v - intrinsics.cy) / intrinsics.fy);
     std::array<float, 3> row_ray{};
     for (int axis = 0; axis < 3; ++axis) {

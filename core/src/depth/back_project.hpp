@@ -5,12 +5,14 @@
 #include <limits>
 #include <vector>
 
+#include "depth/seen_pixels.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
 
-/// The points of a snapshot, in the order of its depth image. A sample without a reading, or
-/// outside the clip box, is `no_point`: not a number, so that every comparison with it is false.
+/// The points of a snapshot or of a rectangle of it, in the order of its depth image. A sample
+/// without a reading, or outside the clip box, is `no_point`: not a number, so that every
+/// comparison with it is false.
 struct PointGrid {
   int width = 0;
   int height = 0;
@@ -28,6 +30,9 @@ inline bool is_point(const Eigen::Vector3f& point) { return !std::isnan(point.x(
 /// Deterministic: the same snapshot gives the same bits on x86-64 and arm64.
 /// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
 PointGrid world_points(const Snapshot& snapshot);
+
+/// The same for the pixels of a rectangle, which must lie in the depth image.
+PointGrid world_points(const Snapshot& snapshot, const PixelRectangle& pixels);
 
 /// Replaces the points outside `box` (metres, object's frame) by `no_point`; those on its faces
 /// stay.

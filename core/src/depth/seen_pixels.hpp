@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -43,6 +44,18 @@ inline PixelRectangle seen_pixels(const Intrinsics& lens,
           .top = clamped(min.y() - margin, lens.height),
           .right = clamped(max.x() + margin, lens.width),
           .bottom = clamped(max.y() + margin, lens.height)};
+}
+
+/// The same for a box. @param box  metres, object's frame
+inline PixelRectangle seen_pixels(const Snapshot& snapshot, const Box& box) {
+  const Eigen::Isometry3d sensor_from_object = snapshot.object_from_sensor.inverse();
+  std::array<Eigen::Vector3d, 8> corners;
+  for (std::size_t i = 0; i < corners.size(); ++i) {
+    corners[i] = sensor_from_object * Eigen::Vector3d(((i & 1U) != 0 ? box.max : box.min).x(),
+                                                      ((i & 2U) != 0 ? box.max : box.min).y(),
+                                                      ((i & 4U) != 0 ? box.max : box.min).z());
+  }
+  return seen_pixels(snapshot.intrinsics, corners);
 }
 
 }  // namespace octurn

@@ -8,6 +8,7 @@
 #include <limits>
 #include <memory>
 
+#include "mesh/hash.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -15,22 +16,15 @@ namespace {
 
 constexpr double base_thickness_mm = 0.1;  // unevenness of a flat base after simplification
 
-/// The finalizer of SplitMix64 (Steele, Lea and Flood 2014).
-std::uint64_t mixed(std::uint64_t bits) {
-  bits = (bits ^ bits >> 30) * 0xbf58476d1ce4e5b9U;
-  bits = (bits ^ bits >> 27) * 0x94d049bb133111ebU;
-  return bits ^ bits >> 31;
-}
-
 std::uint64_t hash_corner(const std::array<float, 3>& corner) {
   const auto bits = [&](std::size_t axis) {
     return std::uint64_t{std::bit_cast<std::uint32_t>(corner[axis] + 0.0F)};  // folds -0 into 0
   };
-  return mixed((bits(0) << 32 | bits(1)) + mixed(bits(2) + 1));
+  return mix_bits((bits(0) << 32 | bits(1)) + mix_bits(bits(2) + 1));
 }
 
 std::uint64_t hash_of_edge(std::uint64_t a, std::uint64_t b) {
-  return mixed(a + std::rotl(b, 32)) - mixed(b + std::rotl(a, 32));
+  return mix_bits(a + std::rotl(b, 32)) - mix_bits(b + std::rotl(a, 32));
 }
 
 }  // namespace

@@ -154,14 +154,15 @@ void reconstruct(const ReconstructArguments& arguments) try {
   const std::unique_ptr<Reconstructor> reconstruction =
       is_tiled ? make_tiled_reconstructor(options, spool_path(arguments.output))
                : make_reconstructor(options);
-  std::optional<PoseChecks> scan_checks;  // of scans on a platform
-  if (!is_tiled) {
-    scan_checks.emplace(options.placements, options.clip, scan.shots.size());
-  }
+  std::optional<PoseChecks> scan_checks;  // of scans on a platform, if somebody reads the verdict
   std::optional<ModelReport> report;
   Times times;
   {
     ProgressBar bar;
+    const bool is_reported = arguments.json || bar.on_terminal();
+    if (is_reported && !is_tiled) {
+      scan_checks.emplace(options.placements, options.clip, scan.shots.size());
+    }
     SnapshotSource snapshots = shown_snapshots(arguments.folder, scan, bar, stop);
     if (scan_checks) {
       snapshots = checked_snapshots(std::move(snapshots), *scan_checks);
@@ -173,9 +174,11 @@ void reconstruct(const ReconstructArguments& arguments) try {
     ModelOutput output(coloured ? coloured->stl() : arguments.output,
                        [&] { return reconstruction->count(snapshots, stop).facets; });
     const auto write = [&](std::span<const Facet> facets) { output.write(facets); };
-    report = write_model(*reconstruction, snapshots, write, stop);
-    if (!report) {
-      throw Stopped{};
+    if (is_reported) {
+      report = reconstruction->measured_surface(snapshots, write, stop);
+      expect_facets(report->triangles);
+    } else {
+      expect_facets(reconstruction->surface(snapshots, write, stop).facets);
     }
     output.commit();
     if (coloured) {

@@ -22,7 +22,7 @@ void make_model(const std::filesystem::path& folder, ReconstructOptions options,
   const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
   reconstruction->add(snapshots, stop);
   const SurfaceCount count = reconstruction->count(snapshots, stop);
-  expect_facets(count);
+  expect_facets(count.facets);
   pipe.set_length(stl_bytes(count.facets));
   pipe.write(stl_header(count.facets));
   const auto send = [&](std::span<const Facet> facets) { pipe.write(std::as_bytes(facets)); };

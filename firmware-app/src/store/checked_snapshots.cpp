@@ -33,6 +33,10 @@ PoseChecks::PoseChecks(std::vector<Placement> placements, const Box& clip, std::
 
 void PoseChecks::add(std::size_t stop, const Snapshot& snapshot) {
   const auto pose = static_cast<std::size_t>(snapshot.pose);
+  if (placements_[pose].object_from_platform.matrix().isIdentity(0)) {
+    checks_[pose]->add(stop, snapshot);
+    return;
+  }
   Snapshot seen = snapshot;
   seen.object_from_sensor =
       placements_[pose].object_from_platform.inverse() * snapshot.object_from_sensor;

@@ -81,6 +81,24 @@ TEST(WorldPoints, AgreeWithTheFormulaAtEverySampleOfAKinect) {
   EXPECT_LT(farthest, 10 * rounding);
 }
 
+TEST(WorldPoints, OfARectangleAreThoseOfTheWholeImage) {
+  Snapshot snapshot = snapshot_of(small_lens, 500);
+  for (std::size_t i = 0; i < 12; ++i) {
+    snapshot.frame.depth[i] = static_cast<std::uint16_t>(500 + 10 * i);
+  }
+  const PointGrid whole = world_points(snapshot);
+
+  const PointGrid part = world_points(snapshot, {.left = 1, .top = 1, .right = 3, .bottom = 3});
+
+  EXPECT_EQ(part.width, 2);
+  EXPECT_EQ(part.height, 2);
+  ASSERT_EQ(part.points.size(), 4U);
+  EXPECT_EQ(part.points[0], whole.points[1 * 4 + 1]);
+  EXPECT_EQ(part.points[1], whole.points[1 * 4 + 2]);
+  EXPECT_EQ(part.points[2], whole.points[2 * 4 + 1]);
+  EXPECT_EQ(part.points[3], whole.points[2 * 4 + 2]);
+}
+
 TEST(WorldPoints, RefuseAFrameOfAnotherSizeThanTheIntrinsics) {
   Snapshot turned = snapshot_of(small_lens, 500);
   std::swap(turned.frame.width, turned.frame.height);

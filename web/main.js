@@ -106,10 +106,11 @@ function listen() {
   click('details-rename', () => rename(state.selected));
   element('reasons').addEventListener('click', (/** @type {any} */ event) => {
     const field = event.target.closest('[data-field]')?.dataset.field;
+    const form = /** @type {HTMLDetailsElement | null} */ (document.getElementById('build-again'));  // it comes later than the page
     if (field) {
       event.preventDefault();
-      element('build-again').open = true;
-      element(field).focus();
+      form && (form.open = true);
+      document.getElementById(field)?.focus();
     }
     const reason = event.target.closest('.reason-places')?.closest('li').dataset.key;
     if (reason) {

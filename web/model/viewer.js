@@ -248,11 +248,11 @@ export class Viewer {
     this.#shadow.draw(this.#renderer, this.#coarse ?? this.#model, this.#model.matrixWorld, this.#reach, isBrief);
   }
 
-  /** Shows the coarse mesh of a large model, while it turns. @param {boolean} isTurning */
-  #simplify(isTurning) {
+  /** Shows the coarse mesh of a large model, which has no colours, while it is dragged. @param {boolean} isDragged */
+  #simplify(isDragged) {
     if (this.#coarse) {
-      this.#coarse.visible = isTurning;
-      this.#model.visible = !isTurning;
+      this.#coarse.visible = isDragged && !this.#painted.value;
+      this.#model.visible = !this.#coarse.visible;
       this.#draw();
     }
   }
@@ -281,7 +281,6 @@ export class Viewer {
   turn(isTurning) {
     if (this.#controls.autoRotate !== isTurning) {
       this.#controls.autoRotate = isTurning;
-      this.#simplify(isTurning);
       this.#onTurning(isTurning);
     }
     this.#draw();

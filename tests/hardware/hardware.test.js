@@ -241,7 +241,7 @@ test('the sensors stand where the program expects them', () => {
     `${metres(radius)} m from the axis, ${metres(high)} m up`]) {
     assert.ok(settings.includes(said), said);
   }
-  assert.ok(readFileSync(join(docs, 'hardware/README.md'), 'utf8').includes(`\`gear_ratio\` = ${gear}`));
+  assert.ok(readFileSync(join(docs, 'hardware/README.md'), 'utf8').includes(`\`turntable.gear_ratio = ${gear}\``));
 });
 
 test('the uprights stay out of the Kinect\'s view', () => {

@@ -109,6 +109,18 @@ TEST_F(WallViews, LeaveAMapThatHasNone) {
   EXPECT_EQ(content_of(sensor_map_path(data_.path(), "A1")), "brought from another machine");
 }
 
+TEST_F(WallViews, LeaveTheMapWhereOneCannotBeRead) {
+  add(0.65);
+  const std::string before = content_of(sensor_map_path(data_.path(), "A1"));
+  for (const auto& file : std::filesystem::recursive_directory_iterator(data_.path())) {
+    if (file.path().extension() == ".png") {
+      put(file.path(), "damaged");
+    }
+  }
+  remake_sensor_map(data_.path(), "A1");
+  EXPECT_TRUE(content_of(sensor_map_path(data_.path(), "A1")) == before);
+}
+
 TEST_F(WallViews, GoWithTheirMap) {
   add(0.65);
   put(sensor_map_path(data_.path(), "A2"), "another sensor's");

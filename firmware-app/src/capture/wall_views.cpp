@@ -4,6 +4,7 @@
 #include <charconv>
 #include <chrono>
 #include <cmath>
+#include <exception>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -123,7 +124,7 @@ double next_wall(const fs::path& data, std::string_view serial) {
   return has_first ? second_wall : first_wall;
 }
 
-void remake_sensor_map(const fs::path& data, std::string_view serial) {
+void remake_sensor_map(const fs::path& data, std::string_view serial) try {
   std::vector<WallView> views;
   for (const StoredView& stored : find_views(wall_views_path(data, serial))) {
     views.push_back(read_stored_view(stored.folder));
@@ -137,6 +138,8 @@ void remake_sensor_map(const fs::path& data, std::string_view serial) {
   } else {
     log::warning("calibration", "the sensor's map is not made again: " + report.reason);
   }
+} catch (const std::exception& error) {
+  log::warning("calibration", std::string("the sensor's map is not made again: ") + error.what());
 }
 
 SensorMapReport add_wall(const fs::path& data, std::string_view serial, const WallView& view) {

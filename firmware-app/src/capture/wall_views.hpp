@@ -36,9 +36,8 @@ std::optional<WallView> look_at_wall(
 double next_wall(const std::filesystem::path& data, std::string_view serial);
 
 /// Fits a sensor's map to its stored wall views again, since its optics have changed: what these
-/// take out, the map must not correct again. Does nothing without stored views; keeps the old map
-/// if the new one is refused.
-/// @throws Error  as `add_wall`
+/// take out, the map must not correct again. Does nothing without stored views; keeps the old map,
+/// and warns, if the new one is refused or a view cannot be read.
 void remake_sensor_map(const std::filesystem::path& data, std::string_view serial);
 
 /// Fits a sensor's map, with its optics in force, to a new wall view and to the stored ones at

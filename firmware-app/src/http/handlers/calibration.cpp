@@ -181,11 +181,12 @@ Response change_calibration(App& app, const Request& request) {
     throw Error(ErrorCode::bad_settings, "the body changes nothing",
                 "It takes platform_from_sensor, scale, sensor_map, optics and lens.");
   }
-  carry_out(app, lens);
-  if ((forget_map && !app.scanner.forget_sensor_map()) ||
-      (undo_optics && !app.scanner.undo_optics())) {
+  // First what may be refused: there may be no earlier optics.
+  if ((undo_optics && !app.scanner.undo_optics()) ||
+      (forget_map && !app.scanner.forget_sensor_map())) {
     refuse_busy();
   }
+  carry_out(app, lens);
   if (is_change) {
     app.scanner.calibration().change(change, app.settings.config().scan, camera_serial(app));
   }
@@ -259,7 +260,8 @@ Response send_points(App& app) {
     throw Error(ErrorCode::not_found, "a camera with lasers measures no depth",
                 "GET /api/v1/preview/depth.png shows what it sees.");
   }
-  const std::vector<OpticsRecord>& known = app.scanner.known_sensor()->optics;
+  const auto sensor = app.scanner.known_sensor();
+  const std::vector<OpticsRecord>& known = sensor->optics;
   const double scale = app.scanner.calibration().in_force({}).depth_scale;
   Intrinsics lens = scaled(camera->lens, scale);
   DepthFrame frame = camera->frame;

@@ -59,5 +59,6 @@ for (const what of ['start', 'list']) {
   require(many[what] < moment + 10 * slack * few[what], `${what} takes longer for each scan where there are more`);
 }
 require(many.status < 1 + 2 * slack * few.status, 'status takes longer where there are more scans');
-// Scans are held in memory, and so is the text of their list, possibly several times at once.
-requireMemory(many.memory - few.memory < 50_000 * count, 'a scan takes more than 50 kB of memory');
+// Scans are held in memory, and so is the text of their list, possibly several times at once. By the sensor's noise, the verdict of
+// every second scan here has 100 places or 300.
+requireMemory(many.memory - few.memory < 120_000 * count, 'a scan takes more than 120 kB of memory');

@@ -182,8 +182,10 @@ export class GpioObserver {
     this.#ask(`writel 0x${register.toString(16)} 0x${value.toString(16)}`);
   }
 
-  /** Reads the guest's clock. All that the guest did before has then been reported: with the first answer its changes have come, and the
-   * time of each, which was asked for then, comes before the second one. */
+  /**
+   * Waits until all that the guest did before has been handled, by reading its clock twice. The first answer comes after the reports of
+   * what it did, each of which asks for its own time; the second answer comes after those times.
+   */
   async refresh() {
     for (let time = 0; time < 2 && this.#socket; ++time) {
       await new Promise((come) => this.#readClock(come));

@@ -112,7 +112,8 @@ TEST_F(WallViews, LeaveAMapThatHasNone) {
 TEST_F(WallViews, LeaveTheMapWhereOneCannotBeRead) {
   add(0.65);
   const std::string before = content_of(sensor_map_path(data_.path(), "A1"));
-  for (const auto& file : std::filesystem::recursive_directory_iterator(data_.path())) {
+  for (const auto& file :
+       std::filesystem::recursive_directory_iterator(wall_views_path(data_.path(), "A1"))) {
     if (file.path().extension() == ".png") {
       put(file.path(), "damaged");
     }

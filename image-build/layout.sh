@@ -10,7 +10,7 @@
 
 # shellcheck disable=SC2034
 {
-  signature=4f637475 # of the partition table: how the initrd knows the card
+  signature=4f637475 # serial number of the FAT: how the initrd knows a card; and of the partition table until the first start
   boot_size=192
   root_size=256
   data_size=8

@@ -6,6 +6,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "calibration/calibration_store.hpp"
+#include "calibration/optics_files.hpp"
+#include "store/job_file.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/zip.hpp"
 #include "version.hpp"
@@ -111,6 +114,34 @@ TEST(Diagnostics, TellsDevicesScansAndLogOfADaemon) {
   EXPECT_EQ(scan["error"]["code"], "sensor-silent");
   EXPECT_EQ(scan["settings"]["snapshots"], 36);
   EXPECT_EQ(content_in(files, "log.txt"), "said\n");
+}
+
+TEST(Diagnostics, TellsPosesAndOpticsWithoutSerialNumbers) {
+  const TemporaryFolder folder;
+  Config config;
+  config.data = folder.path();
+  CalibrationStore(config.data).set({.origin = PoseOrigin::page, .at = "2026-11-21T08:15:00Z"});
+  keep_optics(config.data, "A00362611", {.at = "2026-11-22T08:15:00Z"});
+  put(folder.path() / "optics/A00000000.json", "damaged");
+  const std::vector<ArchivedFile> files{calibration_diagnostics(config)};
+  const json calibration = json_in(files, "calibration.json");
+  EXPECT_EQ(calibration["poses"][0]["at"], "2026-11-21T08:15:00Z") << calibration;
+  EXPECT_TRUE(calibration["optics"][0].is_null()) << calibration;
+  EXPECT_EQ(calibration["optics"][1][0]["at"], "2026-11-22T08:15:00Z") << calibration;
+  EXPECT_EQ(files[0].content.find("A00"), std::string::npos) << files[0].content;
+}
+
+TEST(Diagnostics, TellsTheScansOfAFolderNewestFirst) {
+  const TemporaryFolder folder;
+  for (const char* const id : {"20261121-081500-3f2a", "20261122-081500-3f2a"}) {
+    put(folder.path() / "scans" / id / "job.json", to_job_text(job_of(id, "private")));
+  }
+  put(folder.path() / "scans/20261123-081500-3f2a/job.json", "damaged");
+  const std::vector<ArchivedFile> files{scan_diagnostics(folder.path())};
+  const json scans = json_in(files, "scans.json")["scans"];
+  ASSERT_EQ(scans.size(), 2U) << scans;
+  EXPECT_EQ(scans[0]["id"], "20261122-081500-3f2a");
+  EXPECT_EQ(files[0].content.find("private"), std::string::npos);
 }
 
 TEST(Diagnostics, LeavesOutWhatAPersonCalledAScan) {

@@ -32,10 +32,11 @@ TEST(Diagnostics, AreAFileThatTellsOfTheDaemon) {
   EXPECT_LT(reply.body.size(), 4U << 20U);
 
   const std::vector<ArchivedFile> files = unzipped(reply.body);
-  ASSERT_EQ(files.size(), 7U);
+  ASSERT_EQ(files.size(), 8U);
   EXPECT_EQ(json_in(files, "versions.json")["octurn"], version());
   EXPECT_EQ(json_in(files, "settings.json")["data"], (folder.path() / "data").string());
   EXPECT_EQ(json_in(files, "doctor.json")["findings"][0]["state"], "ok");
+  EXPECT_TRUE(json_in(files, "calibration.json")["optics"].is_array());
   EXPECT_EQ(json_in(files, "devices.json")["sensor"]["state"], "ready");
   EXPECT_EQ(json_in(files, "scans.json")["scans"][0]["state"], "finished");
   EXPECT_NE(content_in(files, "log.txt").find(scan.substr(scan.rfind('/') + 1) + " finished"),
@@ -85,7 +86,9 @@ TEST(Diagnostics, AreWrittenByTheShellToo) {
       {octurn_program(), "doctor", "--simulate", "--json", "--data", folder.path(), "--zip", file});
   doctor.wait();
   const std::vector<ArchivedFile> files = unzipped(content_of(file));
-  ASSERT_EQ(files.size(), 4U);
+  ASSERT_EQ(files.size(), 6U);
+  EXPECT_TRUE(json_in(files, "scans.json")["scans"].empty());
+  EXPECT_EQ(json_in(files, "calibration.json")["poses"].size(), 1U);
   const json printed = json::parse(doctor.output(), nullptr, false);
   EXPECT_EQ(json_in(files, "doctor.json")["findings"], printed["findings"]);
 }

@@ -3,14 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "kinect/kinect_on_desk.hpp"
+#include "rig/usb_log.hpp"
 #include "support/program.hpp"
+#include "support/zip.hpp"
 
 namespace octurn {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 /// A wall at 0.8 m.
@@ -50,6 +54,24 @@ TEST(KinectDoctor, CountsLostFrames) {
   EXPECT_NE(lost["measured"].get<std::string>().find(" whole, 0 in part, "), std::string::npos)
       << lost;  // 60 of 3 x 242 packets
   EXPECT_NE(lost["advice"].get<std::string>().find("USB port"), std::string::npos) << lost;
+}
+
+TEST(KinectDoctor, PutsARecordingOfTheWireIntoTheArchive) {
+  const TemporaryFolder folder;
+  const fs::path file = folder.path() / "day.zip";
+  KinectOnDesk desk({wall()});
+  desk->loss_period = 2;
+  desk->lost_packets = 12;
+  Program doctor({octurn_program(), "doctor", "--simulate", "--sensor", "kinect://", "--data",
+                  folder.path(), "--zip", file});
+  doctor.wait();
+  const std::vector<ArchivedFile> files = unzipped(content_of(file));
+  const std::vector<UsbPacket> packets = parse_usb_log(content_in(files, "wire.txt"));
+  EXPECT_GT(packets.size(), 10U * 242) << doctor.errors();
+  EXPECT_GT(std::ranges::count(lost_packets(packets), true), 12);
+  for (const ArchivedFile& one : files) {
+    EXPECT_EQ(one.content.find("A00000000000000A"), std::string::npos) << one.name;
+  }
 }
 
 TEST(KinectDoctor, CountsLostPackets) {

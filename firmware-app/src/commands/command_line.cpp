@@ -116,9 +116,10 @@ void add_doctor(CLI::App& program, DoctorArguments& arguments, int& status) {
   command.add_flag("--turn", arguments.turn,
                    "also turn the platform with an object on it, and see how it moves");
   command
-      .add_option("--zip", arguments.zip,
-                  "also write versions, settings, findings and the system's state to this file, to "
-                  "be sent to somebody who helps")
+      .add_option(
+          "--zip", arguments.zip,
+          "also write versions, settings, findings, scans, the system's state and ten seconds "
+          "of a Kinect's USB to this file, to be sent to somebody who helps")
       ->type_name("FILE");
   command.footer(
       "Without --turn it never moves the motor. It ends with 0 if there is no fault, with 1 if one "

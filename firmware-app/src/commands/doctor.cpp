@@ -6,10 +6,13 @@
 #include <chrono>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
 #include <sstream>
 
 #include "calibration/calibration_store.hpp"
 #include "commands/commands.hpp"
+#include "commands/usb_recording.hpp"
 #include "doctor/diagnostics.hpp"
 #include "doctor/turn_checks.hpp"
 #include "octurn/error.hpp"
@@ -68,6 +71,9 @@ std::string table_text(const std::vector<Finding>& findings) {
   return text.str();
 }
 
+/// How long the wire is recorded for `--zip`: hundreds of frames.
+constexpr std::chrono::seconds wire_time{10};
+
 /// Opens and reads the sensor, unless a daemon on this data folder is using it.
 SensorReading read_sensor_from_shell(const DoctorInput& input, const std::stop_token& stop) {
   if (input.lines == LineOwner::this_program && input.rig.stepper) {
@@ -77,6 +83,31 @@ SensorReading read_sensor_from_shell(const DoctorInput& input, const std::stop_t
   }
   Rig rig(input.rig);
   return read_sensor(rig, stop);
+}
+
+/// What comes from a Kinect over USB. Nothing of another sensor, one that cannot be opened, of
+/// which a finding says so, or one that a daemon is using.
+std::optional<std::string> record_wire(const DoctorInput& input, const std::stop_token& stop) try {
+  if ((input.lines == LineOwner::this_program && input.rig.stepper) || input.rig.laser) {
+    return std::nullopt;
+  }
+  Rig rig(input.rig);
+  return usb_log_text(rig.sensor(), wire_time, stop);
+} catch (const Error&) {
+  return std::nullopt;
+}
+
+/// @param settings  in force, without the pose that was measured
+std::vector<ArchivedFile> make_diagnostics(const DoctorInput& input, const Config& settings,
+                                           std::span<const Finding> findings,
+                                           const std::stop_token& stop) {
+  std::vector<ArchivedFile> files = machine_diagnostics(input.config, findings);
+  files.push_back(calibration_diagnostics(settings));
+  files.push_back(scan_diagnostics(settings.data));
+  if (std::optional<std::string> wire = record_wire(input, stop)) {
+    files.push_back({.name = "wire.txt", .content = *std::move(wire)});
+  }
+  return files;
 }
 
 /// Turns the platform once and checks its motion.
@@ -127,7 +158,8 @@ bool doctor(const DoctorArguments& arguments) {
   }
   if (arguments.zip) {
     write_file(*arguments.zip,
-               make_zip(machine_diagnostics(config, findings), std::chrono::system_clock::now()));
+               make_zip(make_diagnostics(input, settings.config(), findings, signal.token()),
+                        std::chrono::system_clock::now()));
   }
   write_standard_output(arguments.json ? to_json(findings).dump() + "\n" : table_text(findings));
   return overall_state(findings) != Finding::State::fault;

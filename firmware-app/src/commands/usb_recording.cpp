@@ -52,6 +52,17 @@ bool read_or_wait(DepthSensor& sensor, const std::stop_token& stop) try {
   return true;
 }
 
+/// Reads frames for that long. @return false if stopped first
+bool read_for(std::chrono::seconds duration, DepthSensor& sensor, const std::stop_token& stop) {
+  const auto end = Clock::now() + duration;
+  while (Clock::now() < end) {
+    if (!read_or_wait(sensor, stop)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 UsbRecording::UsbRecording(DepthSensor& sensor, const RecordArguments& arguments)
@@ -81,13 +92,20 @@ void record_usb(const RecordArguments& arguments) {
   const std::stop_token stop = signal.token();
   Rig rig(options);
   UsbRecording recording(rig.sensor(), arguments);
-  const auto end = Clock::now() + std::chrono::seconds(arguments.usb_seconds);
-  while (Clock::now() < end) {
-    if (!read_or_wait(rig.sensor(), stop)) {
-      throw_stopped("no recording was written");
-    }
+  if (!read_for(std::chrono::seconds(arguments.usb_seconds), rig.sensor(), stop)) {
+    throw_stopped("no recording was written");
   }
   recording.write();
+}
+
+std::optional<std::string> usb_log_text(DepthSensor& sensor, std::chrono::seconds duration,
+                                        const std::stop_token& stop) {
+  auto* const logger = dynamic_cast<PacketLogger*>(&sensor);
+  const int count = static_cast<int>(duration.count()) * microframes_per_second;
+  if (logger == nullptr || !logger->log_packets(count) || !read_for(duration, sensor, stop)) {
+    return std::nullopt;
+  }
+  return to_usb_log_text(logger->take_logged_packets(), notes_on_machine(sensor));
 }
 
 }  // namespace octurn

@@ -5,13 +5,19 @@
 #include <algorithm>
 #include <array>
 #include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <utility>
 
+#include "calibration/calibration_store.hpp"
+#include "calibration/optics_files.hpp"
 #include "doctor/system_files.hpp"
+#include "octurn/error.hpp"
 #include "sensor/depth_sensor.hpp"
+#include "store/data_folder.hpp"
 #include "store/job_file.hpp"
 #include "turntable/gpio_chip.hpp"
 #include "version.hpp"
@@ -127,6 +133,46 @@ json scans_without_names(std::span<const Job> scans) {
   return {{"scans", std::move(all)}, {"left_out", left_out}};
 }
 
+/// @return nothing if the folder is no scan's, or damaged
+std::optional<Job> readable_job(const fs::path& folder) try {
+  return read_job(folder);
+} catch (const Error&) {
+  return std::nullopt;
+}
+
+/// The scans that can be read, the newest first: their folders are named by their times.
+std::vector<Job> stored_scans(const fs::path& data) {
+  std::vector<std::string> ids = names_in(data / "scans");
+  std::ranges::sort(ids, std::greater<>());
+  std::vector<Job> scans;
+  for (const std::string& id : ids) {
+    if (std::optional<Job> job = readable_job(data / "scans" / id)) {
+      scans.push_back(*std::move(job));
+    }
+  }
+  return scans;
+}
+
+/// A sensor's optics, the newest first; null if their file is damaged.
+json optics_records(const fs::path& data, const std::string& serial) try {
+  json records = json::array();
+  for (const OpticsRecord& record : read_optics(data, serial)) {
+    records.push_back(to_json(record));
+  }
+  return records;
+} catch (const Error&) {
+  return nullptr;
+}
+
+/// Those of each sensor, without the serial numbers by which they are stored.
+json all_optics(const fs::path& data) {
+  json sensors = json::array();
+  for (const fs::path& file : entries(data / "optics")) {
+    sensors.push_back(optics_records(data, file.stem().string()));
+  }
+  return sensors;
+}
+
 }  // namespace
 
 std::vector<ArchivedFile> machine_diagnostics(const Config& config,
@@ -136,6 +182,22 @@ std::vector<ArchivedFile> machine_diagnostics(const Config& config,
           json_file("settings.json", to_json(config)),
           json_file("doctor.json", to_json(findings)),
           {.name = "system.txt", .content = system_text(root)}};
+}
+
+ArchivedFile calibration_diagnostics(const Config& config) {
+  json poses = json::array();
+  for (const PoseRecord& record :
+       CalibrationStore(config.data, config.sensor).records(config.scan)) {
+    json pose = to_json(record);
+    pose.erase("camera");  // a serial number
+    poses.push_back(std::move(pose));
+  }
+  return json_file("calibration.json",
+                   {{"poses", std::move(poses)}, {"optics", all_optics(config.data)}});
+}
+
+ArchivedFile scan_diagnostics(const fs::path& data) {
+  return json_file("scans.json", scans_without_names(stored_scans(data)));
 }
 
 std::vector<ArchivedFile> daemon_diagnostics(const Status& status, std::span<const Job> scans,

@@ -14,8 +14,8 @@
 
 namespace octurn {
 
-// Files for remote support, of at most 4 MiB. They contain no secrets, no names of scans and no
-// sensor data.
+// Files for remote support, of at most 4 MiB without a recording of USB. They contain no secrets,
+// no names of scans and no sensor data.
 
 /// `versions.json`, `settings.json`, `doctor.json` and `system.txt`.
 /// @param config  in force
@@ -23,6 +23,13 @@ namespace octurn {
 std::vector<ArchivedFile> machine_diagnostics(const Config& config,
                                               std::span<const Finding> findings,
                                               const std::filesystem::path& root = "/");
+
+/// `calibration.json`: the poses and the sensors' optics in force, and the earlier ones.
+/// @param config  with the configured pose
+ArchivedFile calibration_diagnostics(const Config& config);
+
+/// `scans.json` of a data folder, for a program that is not its daemon.
+ArchivedFile scan_diagnostics(const std::filesystem::path& data);
 
 /// `devices.json`, `scans.json` and `log.txt` of a daemon.
 /// @param scans  the newest first

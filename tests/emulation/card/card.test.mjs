@@ -2,7 +2,7 @@
 
 import assert from 'node:assert/strict';
 import {execFileSync} from 'node:child_process';
-import {open, readFile, writeFile} from 'node:fs/promises';
+import {copyFile, open, readFile, writeFile} from 'node:fs/promises';
 import {before, beforeEach, test} from 'node:test';
 
 import {Guest, readCard} from '../../image/guest.mjs';
@@ -37,9 +37,20 @@ async function nameSlot(slot) {
   execFileSync('mcopy', ['-o', '-i', `${image}@@1M`, `${folder}/config.txt`, '::']);
 }
 
-/** Switches the machine on. @returns {Promise<string>} its console output until it restarted */
-async function start() {
-  const guest = await Guest.start('virt', folder);
+const imagesSignature = 0x4f637475;
+const signature = async () => (await read(440, 4)).readUInt32LE();
+const signWith = (number) => write(440, Buffer.from(new Uint32Array([number]).buffer));
+const hex = (number) => number.toString(16).padStart(8, '0');
+const namedDisk = async (slot = 'a') => (await readCard(folder, `${slot}/cmdline.txt`)).slice('octurn.disk='.length).split(' ')[0];
+async function nameDisk(name) {
+  await writeFile(`${folder}/cmdline.txt`, `octurn.disk=${name} quiet panic=10 octurn.slot=a\n`);
+  execFileSync('mcopy', ['-o', '-i', `${image}@@1M`, `${folder}/cmdline.txt`, '::a/']);
+}
+
+/** Switches the machine on. @param {string[]} [more]  options of QEMU
+ * @returns {Promise<string>} its console output until it restarted */
+async function start(more) {
+  const guest = await Guest.start('virt', folder, undefined, more);
   try {
     await guest.restarts(120);
   } finally {
@@ -63,6 +74,49 @@ beforeEach(async () => {
 test('a new card starts its first system, and its last partition fills it', async () => {
   assert.match(await start(), /SYSTEM a of \/dev\/vda, id [0-9a-f]{32}, mark ''/);
   assert.equal((await partition(4)).end, 1 << 30);
+});
+
+test('a new card gets a disk signature of its own, which the next start looks for', async () => {
+  await signWith(imagesSignature);
+  await nameDisk('00000000');
+  assert.match(await start(), /SYSTEM a/);
+  const own = await signature();
+  assert.notEqual(own, imagesSignature);
+  assert.equal(await namedDisk(), hex(own));
+  assert.match(await start(), /SYSTEM a/);
+  assert.equal(await signature(), own);
+  await signWith(imagesSignature);
+  await nameDisk('00000000');
+  await start();
+  assert.notEqual(await signature(), own, 'two cards have the same signature');
+});
+
+test('a signature that is not named, as after a cut of power, or another one, as Windows writes, is named at the next start', async () => {
+  for (const named of ['00000000', '89abcdef']) {
+    await signWith(0x12345678);
+    await nameDisk(named);
+    assert.match(await start(), /SYSTEM a of \/dev\/vda/);
+    assert.equal(await signature(), 0x12345678);
+    assert.equal(await namedDisk(), '12345678');
+  }
+});
+
+test('of two Octurn cards the named one starts, not the one that is found first', async () => {
+  await signWith(0x12345678);
+  await copyFile(image, `${folder}/second.img`);
+  await signWith(imagesSignature);
+  await nameDisk('12345678');
+  const second = ['-drive', `if=none,id=second,format=raw,file=${folder}/second.img`, '-device', 'virtio-blk-pci,drive=second'];
+  assert.match(await start(second), /SYSTEM a of \/dev\/vdb/);
+  assert.equal(await signature(), imagesSignature);
+});
+
+test('a card that was updated keeps its signature, for which the system before looks', async () => {
+  await signWith(imagesSignature);
+  await nameDisk('00000000');
+  await setMark('kept=a 1.2.3\n');
+  assert.match(await start(), /SYSTEM a/);
+  assert.equal(await signature(), imagesSignature);
 });
 
 test('an update is tried once, then the system before it is back', async () => {

@@ -36,6 +36,13 @@ const runs = Object.fromEntries(names.map((name) => [name, run(name)]));
 const rises = (events) => events.filter(({ line, level }) => line === step && level === 1);
 const levels = (events, wanted) => events.filter(({ line }) => line === wanted).map(({ level }) => level).join('');
 
+test("the kernel lets the image's watchdog wait longer than the chip can", () => {
+  const settings = readFileSync(`${import.meta.dirname}/../../../image-build/root/etc/systemd/system.conf.d/octurn.conf`, 'utf8');
+  const wanted = Number(/^RuntimeWatchdogSec=([0-9]+)$/m.exec(settings)[1]);
+  const limit = Number(/WATCHDOG at most ([0-9]+) s/.exec(consoleText)[1]); // 0: none
+  assert.ok(wanted > 16 && (limit === 0 || wanted <= limit), `${wanted} s of ${limit}`);
+});
+
 test('a turn is 800 pulses', () => {
   assert.match(runs.turn.said, /arrived at 800/);
   assert.equal(rises(runs.turn.events).length, 800);

@@ -70,6 +70,7 @@ Response send_diagnostics(App& app) {
   const std::vector<Finding> findings = run_checks(app.doctor_input(), app.scanner);
   const std::vector<Job> scans = all_scans(app);
   std::vector<ArchivedFile> files = machine_diagnostics(app.settings.config(), findings);
+  files.push_back(calibration_diagnostics(app.settings.config()));
   std::ranges::move(daemon_diagnostics(app.scanner.status(), scans, log::recent()),
                     std::back_inserter(files));
   if (app.appliance != nullptr) {

@@ -132,6 +132,26 @@ TEST(LaserScan, HasTrianglesBetweenLinesButNoneAcrossGaps) {
   }
 }
 
+// A degree is 0.8 pixels on an object of 8 cm. The pictures of the stops that close to the first do
+// not exist, so reading one would fail.
+TEST(LaserScan, JoinsALineWithThoseThatAreSomePixelsAway) {
+  const TemporaryFolder folder;
+  const Scan coarse = write_laser_scan(folder.path(), ball_on_platform, 8);
+  Scan fine = coarse;
+  const auto unread = [](double degrees) -> Shot {
+    return {.pictures = {"none.png", "none.png", "none.png"},
+            .angle = radians_from_degrees(degrees)};
+  };
+  fine.shots.insert(fine.shots.begin() + 1, unread(1));
+  fine.shots.push_back(unread(359));
+
+  const Snapshot snapshot = stored_snapshots(folder.path(), fine).read(0);
+
+  const Snapshot expected = stored_snapshots(folder.path(), coarse).read(0);
+  EXPECT_GT(snapshot.strips[0].points.size(), 2 * snapshot.strips[0].own_points);
+  EXPECT_EQ(snapshot.strips[0].points.size(), expected.strips[0].points.size());
+}
+
 // Each pixel holds the first surface on its ray, never one behind it that other stops saw.
 TEST(LaserScan, IsDrawnAsADepthCameraWouldHaveSeenIt) {
   const RegistrationTurn turn =

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 #include "calibrate/missing_part.hpp"
@@ -29,6 +30,12 @@ constexpr double look_gap_deg = 100;  // between neighbouring stops: each sees 6
 constexpr double bad_gap_deg = 170;
 constexpr double look_unseen = 0.25;  // of the surface above the base
 constexpr double bad_unseen = 0.5;
+
+constexpr const char* unseen_hint =
+    "Dull what is black, shiny or clear with chalk or dry shampoo; lay the object another way, and "
+    "scan it again.";
+
+constexpr double max_fill = 0.03;  // metres from anything that was seen
 
 constexpr double max_cut_pixels = 6;  // a depth image: 7 mm at 0.65 m
 constexpr double max_dropped = 0.01;  // of the model's volume
@@ -133,10 +140,35 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
                   {.code = "little-seen",
                    .detail = percent_text(model.unseen_share) +
                              " of the surface above the base was not seen, and is filled in",
-                   .hint = "Dull what is black, shiny or clear with chalk or dry shampoo; lay the "
-                           "object another way, and scan it again.",
+                   .hint = unseen_hint,
                    .parameters = {{"unseen_share", model.unseen_share}},
                    .places = model.places.unseen});
+  }
+}
+
+/// Reports filled-in surface that is far from everything that any stop saw: nothing measured says
+/// where it should be.
+void judge_fill(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
+  std::vector<Eigen::Vector3d> far_places;
+  double farthest = max_fill;
+  for (const Eigen::Vector3d& place : model.places.unseen) {
+    double square = std::numeric_limits<double>::infinity();
+    for (const Eigen::Vector3d& seen : scan.seen) {
+      square = std::min(square, (seen - place).squaredNorm());
+    }
+    if (std::isfinite(square) && square > max_fill * max_fill) {
+      far_places.push_back(place);
+      farthest = std::max(farthest, std::sqrt(square));
+    }
+  }
+  if (!far_places.empty()) {
+    judgement.add(Verdict::look,
+                  {.code = "filled-far",
+                   .detail = "the model is filled in up to " + mm_text(farthest, text_digits) +
+                             " from everything that was seen",
+                   .hint = unseen_hint,
+                   .parameters = {{"fill_mm", mm_from_metres(farthest)}},
+                   .places = std::move(far_places)});
   }
 }
 
@@ -237,6 +269,7 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
   judge_findings(judgement, findings);
   judge_height(judgement, scan, model);
   judge_coverage(judgement, scan, model);
+  judge_fill(judgement, scan, model);
   if (scan.platform_height.value_or(0) <= look_height) {  // else they would judge the platform
     judge_box(judgement, scan);
     judge_parts(judgement, scan, model);

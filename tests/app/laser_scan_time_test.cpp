@@ -62,7 +62,10 @@ class RunningCamera final : public Camera {
       course_.shortest_rest = std::min(course_.shortest_rest, begin - course_.stood_at);
     }
     TimedPicture timed{.picture = {.width = width, .height = height}, .begin = at(begin)};
-    timed.picture.samples.assign(std::size_t{width} * height, lit_at ? 200 : 20);
+    timed.picture.samples.assign(std::size_t{width} * height, 20);
+    for (std::size_t row = 0; lit_at && row < height; ++row) {
+      timed.picture.samples[row * width + width / 2] = 200;
+    }
     return timed;
   }
 

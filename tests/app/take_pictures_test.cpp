@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -12,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "support/random.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
@@ -60,8 +62,47 @@ TEST(Line, IsMoreThanNoiseInAFewRows) {
   expect_line(grey(10), with_line(10, 3, 200), "left");
   EXPECT_EQ(code_thrown_by([] { expect_line(grey(10), with_line(10, 2, 200), "left"); }),
             "sensor-blind");
-  EXPECT_EQ(code_thrown_by([] { expect_line(grey(10), with_line(10, height, 30), "left"); }),
+  EXPECT_EQ(code_thrown_by([] { expect_line(grey(10), with_line(10, height, 17), "left"); }),
             "sensor-blind");
+}
+
+// As of a red laser in a camera's luminance. What is bright has most of the noise: here the right
+// half of the picture, where the line is.
+TEST(Line, MayBeDimWhereItStandsOutOfTheNoise) {
+  constexpr int columns = 400;
+  constexpr int rows = 90;
+  constexpr int room = 60;  // grey levels
+  Random random(5);
+  const auto draw = [&](int line, double deviation) {
+    Picture picture{.width = columns, .height = rows};
+    for (int pixel = 0; pixel < columns * rows; ++pixel) {
+      const int u = pixel % columns;
+      const double noise = u < columns / 2 ? 0 : deviation * random.normal();
+      const double level = room + (u == 300 ? line : 0) + noise;
+      picture.samples.push_back(
+          static_cast<std::uint8_t>(std::clamp(std::lround(level), 0L, 255L)));
+    }
+    return picture;
+  };
+  const auto is_seen = [&](int line, double deviation) {
+    const Picture dark = draw(0, deviation);
+    try {
+      expect_line(dark, draw(line, deviation), "left");
+      return true;
+    } catch (const Error&) {
+      return false;
+    }
+  };
+  EXPECT_TRUE(is_seen(15, 1));
+  EXPECT_TRUE(is_seen(33, 3));
+  EXPECT_TRUE(is_seen(120, 12));
+  for (const double deviation : {1, 3, 6, 12}) {
+    EXPECT_FALSE(is_seen(0, deviation)) << deviation;
+  }
+}
+
+TEST(Line, IsNoLampThatBecameBrighter) {
+  EXPECT_EQ(code_thrown_by([] { expect_line(grey(60), grey(90), "left"); }), "sensor-blind");
 }
 
 constexpr Rgb paint = {40, 12, 9};

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <memory>
 #include <utility>
+#include <variant>
 
 #include "mesh/surface_cells.hpp"
 #include "octurn/units.hpp"
@@ -101,6 +102,19 @@ TEST(Judge, LooksForASideThatNobodySaw) {
   ModelReport model = right_model();
   model.unseen_share = 0.4;
   EXPECT_EQ(codes(judge(right_scan(), model)), Codes{"little-seen"});
+}
+
+TEST(Judge, TellsOfFillFarFromEverythingThatWasSeen) {
+  ScanFigures scan = right_scan();
+  scan.seen = {{0, 0, 0.02}, {0.03, 0, 0.02}};
+  ModelReport model = right_model();
+  model.places.unseen = {{0.055, 0, 0.02}, {-0.02, 0, 0.02}};  // 25 and 20 mm away
+  EXPECT_EQ(judge(scan, model), Quality{});
+  model.places.unseen.push_back({0, 0.06, 0.02});
+  const Quality quality = judge(scan, model);
+  ASSERT_EQ(codes(quality), Codes{"filled-far"});
+  EXPECT_EQ(quality.reasons[0].places, std::vector<Eigen::Vector3d>{model.places.unseen.back()});
+  EXPECT_NEAR(std::get<double>(quality.reasons[0].parameters.at("fill_mm")), 60, 1e-9);
 }
 
 TEST(Judge, NamesTheSideOfTheBoxThatCutsTheObject) {

@@ -29,6 +29,7 @@ const actions = {
   'empty': again,
   'moved': again,
   'little-seen': again,
+  'filled-far': again,
   'parts-dropped': allParts,
   'part-missing': calibrate,
   'coarser': space,

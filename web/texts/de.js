@@ -302,6 +302,7 @@ export const texts = {
   'where.hide': 'Stelle ausblenden',
   'reason.coarser.asked_leaf_size_mm.leaf_size_mm': 'Ein Detail von {asked_leaf_size_mm} passte nicht in den Speicher: das Modell hat eines von {leaf_size_mm}.',
   'reason.cut-by-box.side': 'Das Objekt ragt {side} aus dem Scanraum.',
+  'reason.filled-far.fill_mm': 'Das Modell ist bis zu {fill_mm} entfernt von allem, was zu sehen war, aufgefüllt.',
   'reason.floats.bottom_mm': 'Das Modell beginnt {bottom_mm} über dem Teller.',
   'reason.floats.platform_above_mm': 'Der Teller ist {platform_above_mm} höher zu sehen, als er sein sollte, und wird ein Teil des Modells.',
   'reason.focal-length.longer_share.seen_px.told_px': 'Die Brennweite des Sensors ist {longer_share} länger als genannt: {seen_px} Pixel statt {told_px}.',

@@ -313,6 +313,7 @@ export const texts = {
   'where.hide': 'Hide where',
   'reason.coarser.asked_leaf_size_mm.leaf_size_mm': 'Leaves of {asked_leaf_size_mm} did not fit into the memory: the model has leaves of {leaf_size_mm}.',
   'reason.cut-by-box.side': 'The object reaches through {side} of the scanned space.',
+  'reason.filled-far.fill_mm': 'The model is filled in up to {fill_mm} from everything that was seen.',
   'reason.floats.bottom_mm': 'The model begins {bottom_mm} above the platform.',
   'reason.floats.platform_above_mm': 'The platform is seen {platform_above_mm} above where it should be, and becomes a part of the model.',
   'reason.focal-length.longer_share.seen_px.told_px': 'The sensor’s focal length is {longer_share} longer than configured: {seen_px} pixels instead of {told_px}.',

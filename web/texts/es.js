@@ -302,6 +302,7 @@ export const texts = {
   'where.hide': 'Ocultar el lugar',
   'reason.coarser.asked_leaf_size_mm.leaf_size_mm': 'Un detalle de {asked_leaf_size_mm} no cabía en la memoria: el modelo tiene uno de {leaf_size_mm}.',
   'reason.cut-by-box.side': 'El objeto se sale del espacio escaneado {side}.',
+  'reason.filled-far.fill_mm': 'El modelo está rellenado hasta a {fill_mm} de todo lo que se vio.',
   'reason.floats.bottom_mm': 'El modelo empieza {bottom_mm} sobre el plato.',
   'reason.floats.platform_above_mm': 'El plato se ve {platform_above_mm} por encima de su sitio y pasa a ser parte del modelo.',
   'reason.focal-length.longer_share.seen_px.told_px': 'La focal del sensor es un {longer_share} más larga de lo indicado: {seen_px} píxeles en lugar de {told_px}.',

@@ -302,6 +302,7 @@ export const texts = {
   'where.hide': 'Masquer l’endroit',
   'reason.coarser.asked_leaf_size_mm.leaf_size_mm': 'Un détail de {asked_leaf_size_mm} ne tenait pas en mémoire : le modèle en a un de {leaf_size_mm}.',
   'reason.cut-by-box.side': 'L’objet dépasse de l’espace numérisé {side}.',
+  'reason.filled-far.fill_mm': 'Le modèle est comblé jusqu’à {fill_mm} de tout ce qui a été vu.',
   'reason.floats.bottom_mm': 'Le modèle commence {bottom_mm} au-dessus du plateau.',
   'reason.floats.platform_above_mm': 'Le plateau est vu {platform_above_mm} au-dessus de sa place et devient une partie du modèle.',
   'reason.focal-length.longer_share.seen_px.told_px': 'La focale du capteur est {longer_share} plus longue que donnée : {seen_px} pixels au lieu de {told_px}.',

@@ -29,8 +29,8 @@ std::string_view to_string(Verdict verdict);
 
 /// Why a model is not good.
 struct QualityReason {
-  /// "empty", "stops-disagree", "moved", "floats", "sunk", "little-seen", "cut-by-box",
-  /// "parts-dropped", "part-missing"
+  /// "empty", "stops-disagree", "moved", "floats", "sunk", "little-seen", "filled-far",
+  /// "cut-by-box", "parts-dropped", "part-missing"
   std::string code = {};
   std::string detail = {};     ///< what was found and its size, for people
   std::string hint = {};       ///< what to do about it

@@ -38,9 +38,13 @@ constexpr double max_cost_ratio_in_part = 0.85;  // the same for `trusted_in_par
 
 constexpr std::size_t min_platform_points = 500;
 constexpr std::size_t min_pairs = 500;
-constexpr double max_height = 0.0003;        // metres, median height of lines on the platform
-constexpr double max_disagreement = 0.0004;  // metres, median between two lasers
-constexpr double max_shift = 0.04;           // metres
+
+// Largest medians of the lines' heights on the platform and of the distances between two lasers,
+// metres. A coarse camera is allowed half a pixel at the object.
+constexpr double max_height = 0.0003;
+constexpr double max_disagreement = 0.0004;
+constexpr double max_pixels = 0.5;
+constexpr double max_shift = 0.04;  // metres
 constexpr double max_turn_deg = 6;
 constexpr double lever = 0.05;  // metres above the platform, where `position_sigma` holds
 
@@ -125,6 +129,17 @@ bool moved_a_plane(const std::vector<Laser>& configured, const std::vector<Laser
   return false;
 }
 
+/// What a solution may leave, metres.
+struct Limits {
+  double height = 0;
+  double disagreement = 0;
+
+  /// @param pixel  width of a pixel at the object, metres
+  explicit Limits(double pixel)
+      : height(std::max(max_height, max_pixels * pixel)),
+        disagreement(std::max(max_disagreement, max_pixels * pixel)) {}
+};
+
 /// Two lasers see other surfaces of an object: what a turntable that lost steps looks like, too.
 CalibrationFinding describe_disagreement(double between_lasers) {
   return {
@@ -137,19 +152,19 @@ CalibrationFinding describe_disagreement(double between_lasers) {
       .parameters = {{"lasers_mm", mm_from_metres(between_lasers)}}};
 }
 
-bool lasers_disagree(const RigSolution& solution) {
+bool lasers_disagree(const RigSolution& solution, const Limits& limits) {
   return solution.surface_distances.size() >= min_pairs &&
-         disagreement(solution) > max_disagreement;
+         disagreement(solution) > limits.disagreement;
 }
 
 /// Returns why a solution is refused; empty if it is accepted.
 std::string refusal(const RigSolution& solution, const CalibrationReport& report,
-                    const std::vector<Laser>& configured) {
-  if (median(solution.platform_heights) > max_height) {
+                    const std::vector<Laser>& configured, const Limits& limits) {
+  if (median(solution.platform_heights) > limits.height) {
     return "the lines on the platform are " + mm_text(median(solution.platform_heights), 2) +
            " from flat";
   }
-  if (lasers_disagree(solution)) {
+  if (lasers_disagree(solution, limits)) {
     return describe_disagreement(disagreement(solution)).detail;
   }
   if (report.after > report.before) {
@@ -208,10 +223,11 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   report.platform_from_sensor = best.rig.platform_from_sensor;
   compare_poses(configured.platform_from_sensor, report);
   set_sigmas(best, report);
-  if (lasers_disagree(best)) {
+  const Limits limits(lines.pixel());
+  if (lasers_disagree(best, limits)) {
     report.findings.push_back(describe_disagreement(disagreement(best)));
   }
-  report.reason = refusal(best, report, configured.lasers);
+  report.reason = refusal(best, report, configured.lasers, limits);
   report.accepted = report.reason.empty();
   calibration.lasers = best.rig.lasers;
   for (Laser& laser : calibration.lasers) {

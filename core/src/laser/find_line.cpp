@@ -3,8 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <iterator>
+#include <cstdint>
 #include <span>
+#include <utility>
 
 #include "laser/line_pieces.hpp"
 
@@ -28,6 +29,18 @@ constexpr int light_share = 20;       // of a peak: a line's light ends at a twe
 // it.
 constexpr double skirt = 0.6;
 
+// A halo is a crest, higher in its middle than the baseline, and higher on one side of the line
+// than on the other. So the lowest light above the baseline is left out, too, of the peak's height:
+// this multiple of the halo's share, the best for the measured halos of plastic, plaster, paper and
+// sponge together.
+constexpr double halo_crest = 1.4;
+// A wide line with a halo is light that scatters below the surface, farther to one side than to the
+// other: only the middle of such a line is where the laser meets the surface. From `narrow` to
+// `broad` pixels at half maximum the share that is left out grows from none to `max_level`.
+constexpr double narrow = 5;
+constexpr double broad = 10;
+constexpr double max_level = 0.5;
+
 constexpr int max_half_width = 40;  // pixels: no line is wider
 constexpr float min_light = 25;     // grey levels, summed over the line's width
 
@@ -36,13 +49,14 @@ constexpr int saturated = 250;  // grey levels
 constexpr int min_saturated_pixels = 6;
 constexpr int max_saturated_share = 2;  // half of the line's pixels
 
-// Largest standard deviation across a line: `wide` times the median of all, plus `wide_pixels`.
+// Largest standard deviation across a line: `wide` times the picture's median, plus `wide_pixels`.
 constexpr double wide = 2.5;
 constexpr double wide_pixels = 0.5;
 
-/// A candidate, and the width of its light.
+/// A candidate, and the shape of its light.
 struct Candidate {
   LineSample sample;
+  int peak = 0;         // smoothed grey levels, times the gain
   float deviation = 0;  // pixels, standard deviation
 };
 
@@ -117,6 +131,7 @@ struct Extent {
 struct Baseline {
   int first = 0;
   int last = 0;
+  double level = 0;  ///< above the baseline, from which light counts; a share of the peak's height
 };
 
 /// Takes the halo off a peak's light: narrows it to the line, and returns the halo's baseline.
@@ -139,6 +154,12 @@ Baseline take_off_halo(const Row& row, int peak, Extent& light) {
     light.last = bright.last + more;
     halo.last = row.at(light.last);
   }
+  if (halo.first > 0 || halo.last > 0) {
+    const double share = 0.5 * (halo.first + halo.last) / row.at(peak);
+    const double width = bright.last - bright.first + 1;
+    const double scattered = max_level * (width - narrow) / (broad - narrow);
+    halo.level = std::clamp(std::max(halo_crest * share, scattered), 0.0, max_level);
+  }
   return halo;
 }
 
@@ -147,12 +168,14 @@ Candidate make_candidate(const Row& row, int peak, Extent line) {
   const Baseline halo = take_off_halo(row, peak, line);
   const double base = static_cast<double>(halo.first) / gain;
   const double slope = (static_cast<double>(halo.last) / gain - base) / (line.last - line.first);
+  const double top = static_cast<double>(row.at(peak)) / gain;
+  const double level = halo.level * (top - (base + slope * (peak - line.first)));
   double light = 0;
   double moment = 0;
   double second = 0;
   for (int u = line.first; u <= line.last; ++u) {
     const double at = u - line.first;
-    const double value = std::max(row.difference(u) - (base + slope * at), 0.0);
+    const double value = std::max(row.difference(u) - (base + slope * at) - level, 0.0);
     light += value;
     moment += value * at;
     second += value * at * at;
@@ -163,6 +186,7 @@ Candidate make_candidate(const Row& row, int peak, Extent line) {
   const double mean = moment / light;
   return {
       .sample = {.u = static_cast<float>(line.first + mean), .light = static_cast<float>(light)},
+      .peak = row.at(peak),
       .deviation = static_cast<float>(std::sqrt(std::max(second / light - mean * mean, 0.0)))};
 }
 
@@ -193,20 +217,36 @@ void find_candidates(const Row& row, int v, std::vector<Candidate>& candidates) 
   }
 }
 
-/// Drops candidates that are far wider than the median: subsurface scattering, or light from two
-/// surfaces.
+/// The median of the candidates' deviations, weighted by their peaks: a picture has more candidates
+/// of glow and reflections than of the line, but they are dimmer.
+/// @param candidates  at least one
+float median_deviation(const std::vector<Candidate>& candidates) {
+  std::vector<std::pair<float, int>> weighted;
+  std::int64_t total = 0;
+  for (const Candidate& candidate : candidates) {
+    weighted.emplace_back(candidate.deviation, candidate.peak);
+    total += candidate.peak;
+  }
+  std::ranges::sort(weighted);
+  std::int64_t below = 0;
+  return std::ranges::find_if(weighted,
+                              [&](const auto& entry) {
+                                below += entry.second;
+                                return 2 * below >= total;
+                              })
+      ->first;
+}
+
+/// Drops candidates that are far wider than the picture's line: subsurface scattering, or light
+/// from two surfaces.
 std::vector<LineSample> without_wide(const std::vector<Candidate>& candidates) {
-  std::vector<float> widths;
-  std::ranges::transform(candidates, std::back_inserter(widths), &Candidate::deviation);
   std::vector<LineSample> samples;
-  if (widths.empty()) {
+  if (candidates.empty()) {
     return samples;
   }
-  const auto middle = widths.begin() + static_cast<std::ptrdiff_t>(widths.size() / 2);
-  std::ranges::nth_element(widths, middle);
-  const auto limit = static_cast<float>(wide * static_cast<double>(*middle) + wide_pixels);
+  const double limit = wide * static_cast<double>(median_deviation(candidates)) + wide_pixels;
   for (const Candidate& candidate : candidates) {
-    if (candidate.deviation <= limit) {
+    if (static_cast<double>(candidate.deviation) <= limit) {
       samples.push_back(candidate.sample);
     }
   }

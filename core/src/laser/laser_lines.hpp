@@ -24,12 +24,16 @@ class LaserLines {
 
   const Scan& scan() const { return scan_; }
 
+  /// Width of a pixel on the platform below the centre of the clip box, seen from the first stop,
+  /// metres.
+  double pixel() const { return pixel_; }
+
   /// The lines of a stop, one for each laser. Thread-safe.
   /// @throws Error "scan-missing", "snapshot-malformed"
   const std::vector<LineProfile>& at(std::size_t stop) const;
 
   /// Returns a stop's strips, with the laser planes and the pose for models. Reads the previous and
-  /// the next stop of the same pose, too.
+  /// the next stop of the same pose whose lines are far enough away, too.
   /// @throws Error  as above
   Snapshot snapshot(std::size_t stop) const;
 
@@ -43,8 +47,11 @@ class LaserLines {
     std::size_t next = 0;
   };
 
+  std::size_t neighbour(std::size_t stop, std::size_t step, double min_turn) const;
+
   Scan scan_;
   std::filesystem::path folder_;
+  double pixel_;
   LineScale scale_;
   std::unique_ptr<Stop[]> stops_;
   std::vector<NeighbourStops> neighbours_ = {};

@@ -20,23 +20,28 @@ constexpr double unseen_foot = 0.004;  // metres
 }  // namespace
 
 HoleFilledSdf::HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop,
-                             ThreadTeam& team)
+                             ThreadTeam& team, std::optional<double> max_bulge)
     : known_(known), base_layer_(base_layer) {
-  fill(stop, team);
+  fill(max_bulge, stop, team);
 }
 
 HoleFilledSdf::HoleFilledSdf(const CompactTsdf& known, std::vector<PlatformCut> platforms,
-                             const std::stop_token& stop, ThreadTeam& team)
+                             const std::stop_token& stop, ThreadTeam& team,
+                             std::optional<double> max_bulge)
     : known_(known),
       base_layer_(known.grid().low().z * brick_side),
       platforms_(std::move(platforms)) {
-  fill(stop, team);
+  fill(max_bulge, stop, team);
 }
 
-void HoleFilledSdf::fill(const std::stop_token& stop, ThreadTeam& team) {
+void HoleFilledSdf::fill(std::optional<double> max_bulge, const std::stop_token& stop,
+                         ThreadTeam& team) {
   KnownBlocks blocks = known_blocks(known_, base_layer_, platforms_, stop, team);
   if (blocks.distances.values.empty()) {
     return;
+  }
+  if (max_bulge) {
+    limit_bulges(blocks, grid(), *max_bulge);
   }
   const Index3& low = grid().low();
   const auto voxel = [](int brick, int lowest) { return (brick + lowest) * brick_side; };

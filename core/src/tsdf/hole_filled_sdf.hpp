@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <stop_token>
 #include <vector>
 
@@ -24,15 +25,17 @@ class HoleFilledSdf {
  public:
   /// @param known       must outlive this
   /// @param base_layer  the lowest layer of voxels whose samples count
+  /// @param max_bulge   metres, as of `limit_bulges`; nothing: no limit
   /// @throws Stopped
   HoleFilledSdf(const CompactTsdf& known, int base_layer, const std::stop_token& stop = {},
-                ThreadTeam& team = ThreadTeam::alone());
+                ThreadTeam& team = ThreadTeam::alone(), std::optional<double> max_bulge = {});
 
   /// For several poses: all layers count, and the field is cut at each pose's platform where the
   /// object's foot was not observed.
   /// @param platforms  of the poses, at least one
   HoleFilledSdf(const CompactTsdf& known, std::vector<PlatformCut> platforms,
-                const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone());
+                const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone(),
+                std::optional<double> max_bulge = {});
 
   const VoxelGrid& grid() const { return known_.grid(); }
 
@@ -75,7 +78,7 @@ class HoleFilledSdf {
   enum class Side { inside, outside, both };
   enum class Place { above, near, below };  // the platforms of several poses, or one of them
 
-  void fill(const std::stop_token& stop, ThreadTeam& team);
+  void fill(std::optional<double> max_bulge, const std::stop_token& stop, ThreadTeam& team);
   std::vector<LerpWeight> lerp_weights(int voxels, int blocks) const;
   float trilinear(const LerpWeight& x, const LerpWeight& y, const LerpWeight& z) const;
   float filled_at(const Index3& voxel) const;

@@ -1,7 +1,10 @@
 #include "tsdf/known_blocks.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstddef>
+#include <vector>
 
 #include "octurn/snapshot.hpp"
 
@@ -104,6 +107,58 @@ void find_box(const CompactTsdf& known, KnownBlocks& blocks) {
   }
 }
 
+constexpr std::size_t observed_per_stray = 1000;
+
+/// Half of a k-DOP's directions. The other half are their opposites.
+constexpr std::array<Index3, 13> directions = {{{1, 0, 0},
+                                                {0, 1, 0},
+                                                {0, 0, 1},
+                                                {1, 1, 0},
+                                                {1, -1, 0},
+                                                {1, 0, 1},
+                                                {1, 0, -1},
+                                                {0, 1, 1},
+                                                {0, 1, -1},
+                                                {1, 1, 1},
+                                                {1, 1, -1},
+                                                {1, -1, 1},
+                                                {-1, 1, 1}}};
+
+int along(const Index3& direction, const Index3& block) {
+  return direction.x * block.x + direction.y * block.y + direction.z * block.z;
+}
+
+/// Calls `visit(block, index)` for each block of a grid.
+template <typename Visit>
+void for_each_block(const Index3& size, Visit visit) {
+  std::size_t index = 0;
+  for (int z = 0; z < size.z; ++z) {
+    for (int y = 0; y < size.y; ++y) {
+      for (int x = 0; x < size.x; ++x, ++index) {
+        visit(Index3{x, y, z}, index);
+      }
+    }
+  }
+}
+
+/// The blocks between two planes across a direction.
+struct HullSlab {
+  Index3 direction = {};
+  int low = 0;
+  int high = 0;
+};
+
+/// @param blocks  at least one; reordered
+HullSlab make_slab(const Index3& direction, std::vector<Index3>& blocks, int reach) {
+  const auto strays = static_cast<std::ptrdiff_t>(blocks.size() / observed_per_stray);
+  const auto by_distance = [&](const Index3& block) { return along(direction, block); };
+  std::ranges::nth_element(blocks, blocks.begin() + strays, {}, by_distance);
+  const int low = by_distance(blocks[static_cast<std::size_t>(strays)]);
+  std::ranges::nth_element(blocks, blocks.end() - 1 - strays, {}, by_distance);
+  const int high = by_distance(blocks[blocks.size() - 1 - static_cast<std::size_t>(strays)]);
+  return {.direction = direction, .low = low - reach, .high = high + reach};
+}
+
 /// Sets the value of a block, if it is known.
 /// @param block  indexed in the TSDF's grid
 /// @param index  of the block in `distances`
@@ -155,6 +210,35 @@ KnownBlocks known_blocks(const CompactTsdf& known, int base_layer,
     }
   });
   return blocks;
+}
+
+void limit_bulges(KnownBlocks& blocks, const VoxelGrid& grid, double max_bulge) {
+  PartialGrid& distances = blocks.distances;
+  std::vector<Index3> observed;
+  for_each_block(distances.size, [&](const Index3& block, std::size_t index) {
+    if (distances.known[index] != 0 && distances.values[index] < free_distance) {
+      observed.push_back(block);
+    }
+  });
+  if (observed.empty()) {
+    return;
+  }
+  const double side = grid.voxel_side() * grid.block_voxels();
+  std::vector<HullSlab> hull;
+  for (const Index3& direction : directions) {
+    const double length = std::sqrt(static_cast<double>(along(direction, direction)));
+    hull.push_back(
+        make_slab(direction, observed, static_cast<int>(std::ceil(max_bulge * length / side))));
+  }
+  for_each_block(distances.size, [&](const Index3& block, std::size_t index) {
+    if (distances.known[index] == 0 && std::ranges::any_of(hull, [&](const HullSlab& slab) {
+          const int at = along(slab.direction, block);
+          return at < slab.low || at > slab.high;
+        })) {
+      distances.values[index] = free_distance;
+      distances.known[index] = 1;
+    }
+  });
 }
 
 }  // namespace octurn

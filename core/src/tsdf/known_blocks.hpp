@@ -33,4 +33,12 @@ KnownBlocks known_blocks(const CompactTsdf& known, int base_layer,
                          std::span<const PlatformCut> platforms = {},
                          const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone());
 
+/// Makes unknown blocks free that lie more than `max_bulge` metres outside the convex hull of what
+/// was observed: where nothing was measured at all, the fill would swell up to the next free space.
+///
+/// The hull is approximated from outside, by planes of 26 directions (a k-DOP; Klosowski et al.
+/// 1998). Of the observed blocks, one in a thousand may lie outside in each direction: stray
+/// readings would stretch it.
+void limit_bulges(KnownBlocks& blocks, const VoxelGrid& grid, double max_bulge);
+
 }  // namespace octurn

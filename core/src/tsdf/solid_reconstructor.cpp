@@ -39,6 +39,9 @@ constexpr int min_votes_of_poses = 2 * votes_of_surface_ray + votes_of_any_ray;
 // one this far above the box's bottom.
 constexpr double base_margin = 0.001;  // metres
 
+// Maximum distance of fill from the convex hull of what was seen by laser line.
+constexpr double max_bulge_of_lines = 0.005;  // metres
+
 /// The simplifier's margin below the upper end of its window.
 constexpr double margin_voxels = 8;
 
@@ -199,11 +202,17 @@ int SolidReconstructor::base_layer() const {
   return static_cast<int>(std::ceil((bottom + base_margin) / volume_.grid().voxel_side() - 0.5));
 }
 
+/// Laser lines may leave whole sides of an object unseen: the fill does not swell far there.
+std::optional<double> SolidReconstructor::max_bulge() const {
+  return sees_lines_ ? std::optional(max_bulge_of_lines) : std::nullopt;
+}
+
 /// @throws std::invalid_argument  if the snapshot is of a pose that the options do not list
-std::vector<ConditionedDepth> SolidReconstructor::condition(const Snapshot& snapshot) const {
+std::vector<ConditionedDepth> SolidReconstructor::condition(const Snapshot& snapshot) {
   const Placement* placement =
       options_.placements.empty() ? nullptr : &find_placement(snapshot, options_);
   if (!snapshot.strips.empty()) {
+    sees_lines_ = true;
     return strip_views(snapshot, options_.clip, placement);
   }
   const Snapshot window = crop(snapshot, volume_.grid().box());
@@ -219,13 +228,13 @@ std::vector<ConditionedDepth> SolidReconstructor::condition(const Snapshot& snap
 HoleFilledSdf SolidReconstructor::fill_holes(const CompactTsdf& known, const std::stop_token& stop,
                                              ThreadTeam& team) const {
   if (options_.placements.empty()) {
-    return {known, base_layer(), stop, team};
+    return {known, base_layer(), stop, team, max_bulge()};
   }
   std::vector<PlatformCut> platforms;
   for (const Placement& placement : options_.placements) {
     platforms.emplace_back(known.grid(), placement);
   }
-  return {known, std::move(platforms), stop, team};
+  return {known, std::move(platforms), stop, team, max_bulge()};
 }
 
 /// The components that the model keeps. With several poses none counts as standing.

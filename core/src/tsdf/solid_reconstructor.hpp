@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <optional>
 #include <stop_token>
 #include <vector>
@@ -51,7 +52,8 @@ class SolidReconstructor final : public Reconstructor {
   int min_votes() const;
   CompactTsdf integrate_slabs(const SnapshotSource& snapshots, const std::stop_token& stop);
   int base_layer() const;
-  std::vector<ConditionedDepth> condition(const Snapshot& snapshot) const;
+  std::vector<ConditionedDepth> condition(const Snapshot& snapshot);
+  std::optional<double> max_bulge() const;
   HoleFilledSdf fill_holes(const CompactTsdf& known, const std::stop_token& stop,
                            ThreadTeam& team) const;
   StandingParts keep_parts(const HoleFilledSdf& sdf, const std::stop_token& stop,
@@ -64,7 +66,8 @@ class SolidReconstructor final : public Reconstructor {
 
   ReconstructOptions options_;
   TsdfVolume volume_;
-  std::size_t added_ = 0;  // snapshots
+  std::size_t added_ = 0;                 // snapshots
+  std::atomic<bool> sees_lines_ = false;  // whether a snapshot has strips of laser lines
 
   struct Counted {
     SurfaceCount count = {};

@@ -4,8 +4,10 @@
 #include <chrono>
 #include <cmath>
 #include <cstddef>
+#include <span>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "octurn/error.hpp"
 
@@ -22,8 +24,11 @@ constexpr int max_stale_pictures = 30;
 constexpr std::uint8_t white = 240;
 constexpr double max_white_share = 0.25;
 
-// A line: in one of 30 rows a pixel that is brighter by ten times a camera's noise.
-constexpr int line_levels = 24;
+// A line: in one of 30 rows a pixel is brighter by as much as a line must be to be found, and by
+// twice as much as any pixel of the row is darker. A laser only adds light, while noise takes as
+// much as it adds.
+constexpr int min_line_levels = 8;
+constexpr int noises_of_line = 2;
 constexpr int rows_per_line_row = 30;
 
 /// `Camera::read`, or the same with colours.
@@ -66,6 +71,16 @@ void expect_size_for_scan(const Picture& picture, const Intrinsics& lens,
   }
 }
 
+/// Whether a row of a picture shows a line that is not in the dark picture.
+/// @param changes  of the row's pixels, grey levels; reordered
+bool shows_line(std::span<int> changes) {
+  const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
+  std::ranges::nth_element(changes, middle);
+  const int room = *middle;  // a lamp's flicker
+  const auto [darkest, brightest] = std::ranges::minmax(changes);
+  return brightest - room >= std::max(min_line_levels, noises_of_line * (room - darkest));
+}
+
 }  // namespace
 
 void expect_dark_room(const Picture& dark, const std::string& camera) {
@@ -83,14 +98,14 @@ void expect_dark_room(const Picture& dark, const std::string& camera) {
 
 void expect_line(const Picture& dark, const Picture& lit, const std::string& laser) {
   const auto width = static_cast<std::size_t>(lit.width);
+  std::vector<int> changes(width);
   int rows = 0;
   for (std::size_t first = 0; first < lit.samples.size(); first += width) {
-    int brighter = 0;
-    for (std::size_t pixel = first; pixel < first + width; ++pixel) {
-      brighter = std::max(
-          brighter, static_cast<int>(lit.samples[pixel]) - static_cast<int>(dark.samples[pixel]));
+    for (std::size_t u = 0; u < width; ++u) {
+      changes[u] =
+          static_cast<int>(lit.samples[first + u]) - static_cast<int>(dark.samples[first + u]);
     }
-    rows += brighter >= line_levels ? 1 : 0;
+    rows += shows_line(changes) ? 1 : 0;
   }
   if (rows * rows_per_line_row < lit.height) {
     throw Error(ErrorCode::sensor_blind,

@@ -91,6 +91,66 @@ TEST(FindLine, IsNotDrawnAsideByTheHaloOfARealSurface) {
   }
 }
 
+// The light that a sponge scatters is 15 pixels wide at half maximum.
+TEST(FindLine, FindsTheMiddleOfLightThatScattersToOneSide) {
+  const auto shares = [](double off) {
+    constexpr std::array<double, 6> at{0, 5, 10, 20, 40, 60};
+    constexpr std::array<double, 6> left{1, 0.67, 0.39, 0.25, 0.13, 0};
+    constexpr std::array<double, 6> right{1, 0.61, 0.32, 0.14, 0.04, 0};
+    for (std::size_t i = 1; i < at.size(); ++i) {
+      if (std::abs(off) <= at[i]) {
+        const auto& side = off < 0 ? left : right;
+        return std::lerp(side[i - 1], side[i], (std::abs(off) - at[i - 1]) / (at[i] - at[i - 1]));
+      }
+    }
+    return 0.0;
+  };
+  const auto middle = [](int v) { return 60.2 + 0.1 * v; };
+  const Picture lit = draw([&](double u, int v) { return 200 * shares(u - middle(v)); });
+
+  const std::vector<LineSample> samples = find_line(no_light, lit, {});
+
+  ASSERT_EQ(samples.size(), static_cast<std::size_t>(height - 2));
+  for (const LineSample& sample : samples) {
+    EXPECT_NEAR(sample.u, middle(sample.row), 0.5) << "row " << sample.row;
+  }
+}
+
+// A line that is white in its middle, on plaster.
+TEST(FindLine, FindsASaturatedLineInItsHalo) {
+  const Surface plaster{"plaster", 5, {0.18, 0.08, 0.03, 0.01}, {0.23, 0.08, 0.02, 0.01}};
+  const auto middle = [](int v) { return 55.3 + 0.13 * v; };
+  const Picture lit = draw([&](double u, int v) {
+    const double off = u - middle(v);
+    return line(off, 0, 330, plaster.width / 2.355) +
+           200 * halo(off < 0 ? plaster.left : plaster.right, std::abs(off));
+  });
+
+  const std::vector<LineSample> samples = find_line(no_light, lit, {});
+
+  ASSERT_EQ(samples.size(), static_cast<std::size_t>(height - 2));
+  for (const LineSample& sample : samples) {
+    EXPECT_NEAR(sample.u, middle(sample.row), 0.3) << "row " << sample.row;
+  }
+}
+
+// Narrow reflections have more samples than the line, and are dimmer.
+TEST(FindLine, JudgesWidthsByTheBrightestLine) {
+  const Picture lit = draw([](double u, int) {
+    double light = line(u, 60, 200, 5);
+    for (const double place : {8, 20, 100, 112}) {
+      light += line(u, place, 14, 1);
+    }
+    return light;
+  });
+
+  const std::vector<LineSample> samples = find_line(no_light, lit, {});
+
+  const auto wide =
+      std::ranges::count_if(samples, [](const auto& s) { return std::abs(s.u - 60) < 1; });
+  EXPECT_EQ(wide, height - 2);
+}
+
 TEST(FindLine, FindsEveryPieceInARow) {
   const Picture lit = draw([](double u, int v) {
     return line(u, 30.5, 200) + (v > 10 && v < 50 ? line(u, 75.25, 40) : 0);

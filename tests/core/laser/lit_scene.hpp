@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <numbers>
@@ -110,26 +111,76 @@ inline Scan laser_rig(int stops) {
   return scan;
 }
 
+/// The halo of a laser's line on a surface: of the line's peak, the shares 0, 5, 10, 20, 40 and 60
+/// pixels to each side, between which they are interpolated. Measured on a green laser by a webcam
+/// of 640 x 480.
+struct Halo {
+  std::array<double, 6> left = {};
+  std::array<double, 6> right = {};
+
+  double share(double off) const {
+    constexpr std::array<double, 6> at{0, 5, 10, 20, 40, 60};
+    const auto& shares = off < 0 ? left : right;
+    for (std::size_t i = 1; i < at.size(); ++i) {
+      if (std::abs(off) <= at[i]) {
+        const double part = (std::abs(off) - at[i - 1]) / (at[i] - at[i - 1]);
+        return std::lerp(shares[i - 1], shares[i], part);
+      }
+    }
+    return 0;
+  }
+};
+
+inline constexpr Halo on_plastic{.left = {0.1, 0.06, 0.02, 0.02, 0.01, 0},
+                                 .right = {0.07, 0.04, 0.01, 0.01, 0.005, 0}};
+inline constexpr Halo on_plaster{.left = {0.26, 0.18, 0.08, 0.03, 0.01, 0},
+                                 .right = {0.33, 0.23, 0.08, 0.02, 0.01, 0}};
+inline constexpr Halo on_paper{.left = {0.46, 0.38, 0.3, 0.28, 0.27, 0},
+                               .right = {0.44, 0.34, 0.24, 0.13, 0.03, 0}};
+inline constexpr Halo on_sponge{.left = {1, 0.67, 0.39, 0.25, 0.13, 0},
+                                .right = {1, 0.61, 0.32, 0.14, 0.04, 0}};
+
+/// What real light does besides drawing lines; the defaults are none of it.
+struct StrayLight {
+  double exposure = 1;  ///< of the line: 2 saturates its middle
+  Halo halo = {};
+  /// Grey levels of the light that a lit object throws on the white squares of a platform that is
+  /// printed with squares of 9 mm.
+  double indirect = 0;
+};
+
 /// Draws pictures of a scene as a laser rig sees it.
 class LaserPictures {
  public:
-  LaserPictures(const Scan& scan, LitScene scene, double noise)
-      : scan_(scan), scene_(std::move(scene)), noise_(noise) {}
+  LaserPictures(const Scan& scan, LitScene scene, double noise, const StrayLight& stray = {})
+      : scan_(scan), scene_(std::move(scene)), noise_(noise), stray_(stray) {}
 
   /// @param laser  null for the dark picture
   std::vector<std::uint8_t> draw(double angle, const Laser* laser) {
     const Intrinsics& lens = scan_.intrinsics;
     const Eigen::Isometry3d pose = object_from_sensor(scan_.platform_from_sensor, angle);
-    std::vector<std::uint8_t> samples;
+    std::vector<Row> rows(static_cast<std::size_t>(lens.height));
+    std::vector<Peak> peaks(rows.size());
     for (int v = 0; v < lens.height; ++v) {
-      for (int u = 0; u < lens.width; ++u) {
-        double light = 6;  // room light, grey levels
-        if (laser != nullptr && is_near(*laser, pose, u, v)) {
+      Row& row = rows[static_cast<std::size_t>(v)];
+      row.assign(static_cast<std::size_t>(lens.width), 0.0);
+      for (int u = 0; laser != nullptr && u < lens.width; ++u) {
+        if (is_near(*laser, pose, u, v)) {
           for (int part = 0; part < parts; ++part) {
-            light += of_line(*laser, pose, u + (part + 0.5) / parts - 0.5, v) / parts;
+            row[static_cast<std::size_t>(u)] +=
+                stray_.exposure * of_line(*laser, pose, u + (part + 0.5) / parts - 0.5, v) / parts;
           }
         }
-        light += noise_ * 3.5 * (random_.uniform() - 0.5);  // 3.5 is about sqrt(12): deviation 1
+      }
+      peaks[static_cast<std::size_t>(v)] = find_peak(row);
+    }
+    std::vector<std::uint8_t> samples;
+    for (int v = 0; v < lens.height; ++v) {
+      Row& row = rows[static_cast<std::size_t>(v)];
+      add_halo(row, peaks, v);
+      add_indirect_light(row, pose, v, peaks[static_cast<std::size_t>(v)].level);
+      for (const double line : row) {
+        const double light = room_light + line + noise_ * 3.5 * (random_.uniform() - 0.5);
         samples.push_back(static_cast<std::uint8_t>(std::clamp(std::lround(light), 0L, 255L)));
       }
     }
@@ -137,8 +188,58 @@ class LaserPictures {
   }
 
  private:
+  static constexpr double room_light = 6;     // grey levels
   static constexpr int parts = 3;             // samples across a pixel
   static constexpr double half_width = 8e-4;  // metres, to 1/e^2 of the peak
+
+  using Row = std::vector<double>;
+
+  /// The brightest pixel of a row of line light, and the centre of the light around it.
+  struct Peak {
+    double level = 0;
+    double column = 0;
+  };
+
+  static Peak find_peak(const Row& row) {
+    const auto peak = std::ranges::max_element(row);
+    if (*peak <= 0) {
+      return {};
+    }
+    const auto first = peak - std::min<std::ptrdiff_t>(3, peak - row.begin());
+    const auto end = peak + std::min<std::ptrdiff_t>(4, row.end() - peak);
+    double light = 0;
+    double moment = 0;
+    for (auto at = first; at != end; ++at) {
+      light += *at;
+      moment += *at * static_cast<double>(at - row.begin());
+    }
+    return {.level = *peak, .column = moment / light};
+  }
+
+  /// Adds the halo of a row's line and of those around it: light scatters along the line, too.
+  void add_halo(Row& row, const std::vector<Peak>& peaks, int v) const {
+    constexpr int reach = 4;  // rows
+    for (int from = std::max(v - reach, 0);
+         from <= v + reach && from < static_cast<int>(peaks.size()); ++from) {
+      const Peak& peak = peaks[static_cast<std::size_t>(from)];
+      const double weight = (1 + reach - std::abs(from - v)) / std::pow(1 + reach, 2);
+      for (std::size_t u = 0; peak.level > 0 && u < row.size(); ++u) {
+        const double off = static_cast<double>(u) - peak.column;
+        row[u] += weight * peak.level * stray_.halo.share(off);
+      }
+    }
+  }
+
+  /// @param level  of the row's line
+  void add_indirect_light(Row& row, const Eigen::Isometry3d& pose, int v, double level) const {
+    for (std::size_t u = 0; stray_.indirect > 0 && level > 0 && u < row.size(); ++u) {
+      Eigen::Vector3d point;
+      if (cast(pose, static_cast<double>(u), v, point) && std::abs(point.z()) < 1e-6) {
+        const Eigen::Vector2d cell = (point.head<2>() / 0.009).array().floor();
+        row[u] += std::fmod(std::abs(cell.sum()), 2) == 0 ? stray_.indirect : 0;
+      }
+    }
+  }
 
   /// The first surface on a pixel's ray. `point` receives it in the object's frame.
   std::optional<LitScene::Hit> cast(const Eigen::Isometry3d& pose, double u, double v,
@@ -192,14 +293,15 @@ class LaserPictures {
   const Scan& scan_;
   LitScene scene_;
   double noise_;
+  StrayLight stray_;
   Random random_{7};
 };
 
 /// Writes a scan folder whose pictures show the scene.
-inline Scan write_laser_scan(const std::filesystem::path& folder, const LitScene& scene,
-                             int stops) {
+inline Scan write_laser_scan(const std::filesystem::path& folder, const LitScene& scene, int stops,
+                             const StrayLight& stray = {}) {
   const Scan scan = laser_rig(stops);
-  LaserPictures pictures(scan, scene, 0.5);
+  LaserPictures pictures(scan, scene, 0.5, stray);
   std::filesystem::create_directories(folder / "snapshots");
   for (const Shot& shot : scan.shots) {
     for (std::size_t i = 0; i < shot.pictures.size(); ++i) {

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
-import {openBrowser, openPage, picture} from './browser.js';
+import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, startScanner} from './scanner.js';
 
 const button = (page) => page.getByRole('button', {name: 'Check now'});
@@ -34,6 +34,17 @@ async function checkBrokenOne(scanner, browser, screen) {
   assert.ok(overflow <= 0, `${overflow} pixels too wide`);
   await page.locator('.doctor').scrollIntoViewIfNeeded();
   await picture(page, `check-faults-${screen}`);
+  await goTo(page, 'Scan');
+  await page.locator('#no-picture').getByText('No picture', {exact: true}).waitFor();  // the form says why, once
+  assert.match(await page.locator('#faults').innerText(), /sensor/i);
+  const start = page.getByRole('button', {name: 'Start scan'});
+  assert.equal(await start.getAttribute('aria-disabled'), 'true');
+  assert.equal(await start.getAttribute('aria-describedby'), 'faults');
+  await start.focus();
+  await page.keyboard.press('Enter');
+  await page.waitForResponse('**/api/v1/status');
+  assert.ok(await page.locator('#problem').isHidden(), 'nothing was asked for that cannot be done');
+  assert.equal((await ask(scanner, 'status')).scan, null);
   await page.context().close();
 }
 

@@ -40,11 +40,12 @@ async function checkBrokenOne(scanner, browser, screen) {
   const start = page.getByRole('button', {name: 'Start scan'});
   assert.equal(await start.getAttribute('aria-disabled'), 'true');
   assert.equal(await start.getAttribute('aria-describedby'), 'faults');
+  const posted = [];
+  page.on('request', (request) => request.method() === 'POST' && posted.push(request.url()));
   await start.focus();
   await page.keyboard.press('Enter');
-  await page.waitForResponse('**/api/v1/status');
-  assert.ok(await page.locator('#problem').isHidden(), 'nothing was asked for that cannot be done');
-  assert.equal((await ask(scanner, 'status')).scan, null);
+  await page.evaluate(() => new Promise(requestAnimationFrame));
+  assert.deepEqual(posted, [], 'nothing is asked for that cannot be done');
   await page.context().close();
 }
 

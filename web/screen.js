@@ -204,6 +204,9 @@ function libraryOf(state) {
   };
 }
 
+/** @param {Device} device */
+const isBroken = ({state}) => state === 'missing' || state === 'failed';
+
 /** @param {'sensor' | 'turntable'} role @param {Device} device @param {boolean} isAway  whether the scanner does not answer, so that its last status may be outdated */
 function deviceOf(role, device, isAway) {
   const isReady = device.state === 'ready';
@@ -273,6 +276,7 @@ export function screenOf(state) {
     announcement: announcementOf(state),
     isAway: away,
     isBusy: state.isPending,
+    canStart: [state.status?.sensor, state.status?.turntable].every((device) => device && !isBroken(device)),
     isSimulated: Boolean(state.status?.sensor.simulated || state.status?.turntable.simulated),
     devices,
     panel,

@@ -186,7 +186,8 @@ export function render(screen) {
   renderLibrary(screen);
   for (const id of ['start', 'pause', 'cancel', 'resume', 'end']) {
     element(id).disabled = screen.isAway;
-    element(id).setAttribute('aria-disabled', String(screen.isBusy || Boolean(screen.progress?.isStopping)));  // unlike disabled, it keeps the focus
+    const isUnusable = screen.isBusy || Boolean(screen.progress?.isStopping) || (id === 'start' && !screen.canStart);
+    element(id).setAttribute('aria-disabled', String(isUnusable));  // unlike disabled, it keeps the focus
   }
   if (screen.footer) {
     setText(element('version'), screen.footer.version);

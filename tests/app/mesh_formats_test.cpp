@@ -269,6 +269,7 @@ TEST_F(MeshFormats, DrawABallAsADiscThatIsBrighterWhereTheLightIs) {
   const auto red = [&](std::size_t x, std::size_t y) { return pixels[(y * 256 + x) * 4]; };
   EXPECT_EQ(pixels[3], 0) << "nothing is in the corner";
   EXPECT_GT(red(110, 60), red(150, 220)) << "the light comes from above";
+  EXPECT_GT(red(50, 110), red(206, 110) + 30) << "and from the left, as in the page's 3D view";
 }
 
 Eigen::Vector3d to_point(const Vertex& corner) {

@@ -1,10 +1,15 @@
 #include "http/packed.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
 
+#include <filesystem>
+#include <fstream>
+
 #include "app/response_header.hpp"
 #include "http/json_body.hpp"
+#include "support/temporary_folder.hpp"
 
 namespace octurn {
 namespace {
@@ -54,6 +59,39 @@ TEST(Packed, IsOnlyLongJsonForWhoTakesIt) {
   page.headers.emplace_back("Content-Encoding", "gzip");
   EXPECT_EQ(std::get<std::string>(packed(gzip_taker, std::move(page)).body),
             std::get<std::string>(long_json().body));
+}
+
+Response model(const std::filesystem::path& file) {
+  return {.headers = {{"Content-Type", "model/stl"}, {"ETag", "\"1f\""}},
+          .body = FileSlice{FileDescriptor(::open(file.c_str(), O_RDONLY | O_CLOEXEC)), 0,
+                            std::filesystem::file_size(file)}};
+}
+
+TEST(Packed, IsTheSameModel) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "Scan.stl";
+  const std::string bytes(50'000, '\1');
+  std::ofstream(file, std::ios::binary) << bytes;
+  const Response small = packed(gzip_taker, model(file));
+  EXPECT_EQ(header(small, "Content-Encoding"), "gzip");
+  EXPECT_EQ(header(small, "ETag"), "W/\"1f\"");
+  ASSERT_EQ(small.body.index(), 0U);
+  EXPECT_EQ(unpacked(std::get<std::string>(small.body)), bytes);
+
+  const Response whole = packed({}, model(file));
+  EXPECT_EQ(header(whole, "Content-Encoding"), "");
+  EXPECT_EQ(header(whole, "ETag"), "\"1f\"") << "a strong one, for ranges";
+  Response part = model(file);
+  part.status = 206;
+  EXPECT_EQ(header(packed(gzip_taker, std::move(part)), "Content-Encoding"), "");
+}
+
+TEST(Packed, IsNoModelThatIsTooLargeForMemory) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "Scan.stl";
+  std::ofstream(file).close();
+  std::filesystem::resize_file(file, 4'000'001);
+  EXPECT_EQ(packed(gzip_taker, model(file)).body.index(), 1U);
 }
 
 TEST(Packed, HasATagThatTheClientIsRecognisedBy) {

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "turntable/motion.hpp"
+
 namespace octurn {
 namespace {
 
@@ -48,6 +50,18 @@ TEST(ScanEstimate, OfAModelGrowsAsTheSquareOfOneOverTheLeafSize) {
   const ScanEstimate estimate = estimate_scan({earlier(usual, 25s, 5s)}, fine);
   EXPECT_DOUBLE_EQ(estimate.build.count(), 20);
   EXPECT_EQ(estimate.bytes, 4'900'000U);
+}
+
+TEST(ScanEstimate, GuessesThatTheTurnToAFartherStopTakesLonger) {
+  const Motion motion;  // of the default motor: a microstep is 0.45 degrees
+  for (const int snapshots : {8, 12, 36, 100}) {
+    const ScanSettings near{.snapshots = 400};
+    const ScanSettings far{.snapshots = snapshots};
+    const Seconds longer = estimate_scan({}, far).stop - estimate_scan({}, near).stop;
+    const double turn = move_time(motion, motion.steps_per_turn / snapshots) -
+                        move_time(motion, motion.steps_per_turn / 400);
+    EXPECT_NEAR(longer.count(), turn, 0.03) << "of 0.025 s for a step at the start speed";
+  }
 }
 
 TEST(ScanEstimate, IsAGuessWhereNoScanTellsIt) {

@@ -56,7 +56,7 @@ async function startByKeyboard(scanner, browser) {
   await page.locator('[data-panel=form]').waitFor();
   await page.locator('#all-settings > summary').focus();
   await page.keyboard.press('Enter');
-  const snapshots = page.getByLabel('Snapshots a turn', {exact: true});
+  const snapshots = page.getByLabel('Snapshots per turn', {exact: true});
   await snapshots.focus();
   await page.keyboard.press('ControlOrMeta+a');
   await page.keyboard.type('4');

@@ -119,7 +119,7 @@ async function joinWifi(appliance, browser, screen, colorScheme) {
   await look(page, `wifi-chosen-${screen}`);
   await wifi.getByRole('button', {name: 'Join'}).click();
   await wifi.getByText('Joining “Home”…').waitFor();
-  assert.match(await wifi.locator('#wifi-joining').innerText(), /Put this device into “Home”, too, and open http:\/\/.+\.local/);
+  assert.match(await wifi.locator('#wifi-joining').innerText(), /Connect this device to “Home”, too, and open http:\/\/.+\.local/);
   assert.equal(await readCode(page, wifi), String.raw`WIFI:T:WPA;S:Home;P:open\;\"sesame\";;` + '\n');
   assert.equal(String(await appliance.take('wifi')), 'wifi_name = Home\nwifi_password = open;"sesame"\nwifi_country = DE\n');
   await look(page, `wifi-joining-${screen}`);

@@ -101,16 +101,16 @@ export const openSettings = (page) => page.locator('#all-settings').evaluate((de
 /** Fills the form for a quick scan. */
 export async function chooseQuickScan(page, snapshots) {
   await openSettings(page);
-  await page.getByLabel('Snapshots a turn', {exact: true}).fill(String(snapshots));
+  await page.getByLabel('Snapshots per turn', {exact: true}).fill(String(snapshots));
   await page.getByLabel('Draft').check();
   await page.getByLabel('Depth filter').selectOption('basic');
 }
 
-/** Stores a screenshot of the page, if the environment asks for screenshots. */
-export async function picture(page, name) {
+/** Stores a screenshot of the page, or of what its window shows, if the environment asks for screenshots. */
+export async function picture(page, name, {fullPage = true} = {}) {
   const where = process.env.OCTURN_PICTURES;
   if (where) {
     await mkdir(where, {recursive: true});
-    await page.screenshot({path: join(where, `${name}.png`), fullPage: true});
+    await page.screenshot({path: join(where, `${name}.png`), fullPage});
   }
 }

@@ -111,7 +111,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   await picture(page, 'finished');
 
   await page.getByRole('button', {name: 'Measure between two points'}).click();
-  for (const [place, text] of [[0.3, 'Click another one.'], [0.5, /^\d+\.\d mm, along X, Y and Z/]]) {
+  for (const [place, text] of [[0.3, 'Click another one.'], [0.5, /^\d+\.\d mm \(ΔX /]]) {
     await clickModel(page, place);
     await page.locator('#measured').filter({hasText: text}).waitFor();
   }

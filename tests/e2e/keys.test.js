@@ -30,7 +30,7 @@ test('a key lets a program in until it is revoked', async (t) => {
   await page.goto(`${scanner.url}#settings`);
 
   await page.getByRole('button', {name: 'Make a key'}).click();
-  await page.getByText('Write what the key is for.').waitFor();
+  await page.getByText('Enter what the key is for.').waitFor();
   const reader = await makeKey(page, 'Home Assistant', 'read');
   const writer = await makeKey(page, 'A script', 'full');
 

@@ -43,14 +43,14 @@ test('settings that make no sense are not sent', async (t) => {
   assert.deepEqual((await ask(scanner, 'scans')).scans, []);
 
   await page.getByRole('button', {name: 'Back to Standard'}).click();
-  await page.getByLabel('Snapshots a turn', {exact: true}).fill('40');
+  await page.getByLabel('Snapshots per turn', {exact: true}).fill('40');
   await page.getByLabel('Coarse').check();
   await page.getByLabel('Depth filter').selectOption('basic');
   await page.getByLabel('Intersection').check();
   await page.getByLabel('Widest gap bridged').fill('20');
   const another = await page.context().newPage();
   await another.goto(scanner.url);
-  await another.getByText('Custom: 40 snapshots a turn, detail of 2 mm.').waitFor();
+  await another.getByText('Custom: 40 snapshots per turn · 2 mm detail').waitFor();
   await another.close();
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();

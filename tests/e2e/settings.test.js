@@ -48,10 +48,10 @@ async function haveTheirPlace(scanner, browser) {
 /** A default for scans is in the form of a new scan at once, and still after a restart. */
 async function keepScanDefault(scanner, browser) {
   const {page, faults} = await openSettings(browser, scanner);
-  assert.equal(await save(page, 'Snapshots a turn').isVisible(), false);
+  assert.equal(await save(page, 'Snapshots per turn').isVisible(), false);
   assert.match(await page.getByLabel('Memory').inputValue(), /^\d+$/);  // half of the machine's, in whole MB
-  await card(page, 'Snapshots a turn').getByLabel('Snapshots a turn').fill('12');
-  await save(page, 'Snapshots a turn').click();
+  await card(page, 'Snapshots per turn').getByLabel('Snapshots per turn').fill('12');
+  await save(page, 'Snapshots per turn').click();
   await page.getByText('Saved.', {exact: true}).waitFor();
   assert.equal((await ask(scanner, 'settings')).defaults.snapshots, 12);
   assert.deepEqual(faults, []);
@@ -67,7 +67,7 @@ async function refuseByField(scanner, browser) {
   await page.getByLabel('Gear ratio').fill('0');
   await save(page, 'Gear ratio').click();
   const field = page.locator('[data-setting="turntable.gear_ratio"]');
-  await field.getByText('It must be from 0.001 to 1000.').waitFor();
+  await field.getByText('It must be between 0.001 and 1000.').waitFor();
   await page.getByLabel('Gear ratio').fill('1');
   await page.getByLabel('Take-up of play').fill('801');  // more than a turn, which only the scanner can know
   await save(page, 'Gear ratio').click();
@@ -146,6 +146,61 @@ async function holdAnswers(page, method) {
   return release;
 }
 
+/** The user of a PrusaLink printer is asked for, as it may not be maker. */
+async function addPrinter(browser, scanner) {
+  const {page} = await openSettings(browser, scanner);
+  await page.getByLabel('Software', {exact: true}).selectOption('prusalink');
+  const values = {"Printer's name": 'MK4', "Printer's address": 'http://127.0.0.1:9', 'User': 'jane', 'API key': 'a key'};
+  for (const [label, value] of Object.entries(values)) {
+    await page.getByLabel(label, {exact: true}).fill(value);
+  }
+  const isSent = (/** @type {any} */ one) => one.method() === 'POST' && one.url().endsWith('/api/v1/printers');
+  const button = page.getByRole('button', {name: 'Add the printer'});
+  const [request] = await Promise.all([page.waitForRequest(isSent), button.click()]);
+  assert.deepEqual(request.postDataJSON(),
+      {name: 'MK4', kind: 'prusalink', url: 'http://127.0.0.1:9', user: 'jane', key: 'a key'});
+  await page.context().close();
+}
+
+/** Both columns of a plain machine's settings end at about the same height. */
+async function compareColumns(browser, scanner) {
+  const {page} = await openSettings(browser, scanner);
+  await page.getByRole('heading', {name: 'Power'}).waitFor();
+  await page.getByRole('heading', {name: 'Printers'}).waitFor();
+  const ends = await page.evaluate(() => {
+    const columns = new Map();
+    for (const card of document.querySelectorAll('.setting-card')) {
+      const {left, bottom, height} = card.getBoundingClientRect();
+      height > 0 && columns.set(left, Math.max(columns.get(left) ?? 0, bottom));
+    }
+    return [...columns.values()];
+  });
+  assert.equal(ends.length, 2);
+  assert.ok(Math.abs(ends[0] - ends[1]) < 300, `${ends}`);
+  await page.context().close();
+}
+
+/** A theme holds for this browser, whatever the system has, and in the help, too. */
+async function chooseTheme(browser, scanner) {
+  const {page, faults} = await openSettings(browser, scanner);
+  const shown = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
+  const light = await shown();
+  await Promise.all([page.waitForEvent('load'), page.getByLabel('Theme', {exact: true}).selectOption('dark')]);
+  await page.locator('#cards').waitFor();
+  const dark = await shown();
+  assert.notEqual(dark, light);
+  assert.equal(await page.getByLabel('Theme', {exact: true}).inputValue(), 'dark');
+  await picture(page, 'settings-theme-dark');
+  await page.goto(`${scanner.url}help/guide.html`);
+  assert.equal(await shown(), dark);
+  await page.goto(`${scanner.url}#settings`);
+  await page.locator('#cards').waitFor();
+  await Promise.all([page.waitForEvent('load'), page.getByLabel('Theme', {exact: true}).selectOption('')]);
+  assert.equal(await shown(), light);
+  assert.deepEqual(faults, []);
+  await page.context().close();
+}
+
 test('the turntable gets one command at a time, however late the answers come', async (t) => {
   const scanner = await startScanner(t);  // a test of the turntable lasts longer than a busy browser takes
   const {page} = await openPage(await openBrowser(t, {hasWebGl: false}), scanner.url);
@@ -193,6 +248,9 @@ test('settings are set on the page and last', async (t) => {
   const scanner = await startScanner(t);
   const browser = await openBrowser(t, {hasWebGl: false});
   await t.test('each of them', () => haveTheirPlace(scanner, browser));
+  await t.test('in two columns that end together', () => compareColumns(browser, scanner));
+  await t.test('a theme, for this browser', () => chooseTheme(browser, scanner));
+  await t.test('the user of a printer', () => addPrinter(browser, scanner));
   await t.test('a default of scans', () => keepScanDefault(scanner, browser));
   await t.test('a wrong one is told by its field', () => refuseByField(scanner, browser));
   await t.test('one that needs a restart', () => takeUpGear(scanner, browser));

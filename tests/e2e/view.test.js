@@ -119,12 +119,123 @@ async function result(page) {
     assert.ok(inSight > await sizeOf(page) - 1 && inSight > 200, `the whole picture, not ${inSight} pixels of it: ${name}`);
     assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
     await picture(page, `result-${name}`);
+    if (name === 'desktop') {
+      await picture(page, 'page', {fullPage: false});  // README's: web/docs/page.png
+    }
   }
   assert.ok(await page.locator('#verdict').evaluate((verdict) => verdict.clientHeight) < 48, 'the verdict is one line');
   await resize(page, screens.desktop);
   await page.evaluate(() => scrollTo(0, document.body.scrollHeight));
   assert.ok(await pictureInSight(page) > 300, 'the picture stays beside what is scrolled');
   assert.deepEqual(await complaints(page), []);
+}
+
+/** All texts grow with the browser's font size, and nothing is cut off by that. */
+async function largeLetters(page, states) {
+  for (const [name, size] of Object.entries({phone: screens.phone, desktop: screens.desktop})) {
+    await resize(page, size);
+    const letters = () => page.evaluate(() => ['body', 'h1', '.primary', '.muted'].map((part) =>
+      parseFloat(getComputedStyle(document.querySelector(part)).fontSize)));
+    const usual = await letters();
+    const setSize = (value) => page.evaluate((given) => {
+      document.documentElement.style.fontSize = given;
+    }, value);
+    await setSize('150%');
+    assert.deepEqual(await letters(), usual.map((pixels) => 1.5 * pixels));
+    assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+    await picture(page, `${states}-large-${name}`);
+    await setSize('');
+  }
+}
+
+/** A page in a tab that nobody looks at, which notes the sounds that it plays. */
+async function openHidden(browser, url) {
+  const {page} = await openPage(browser, 'about:blank');
+  await page.addInitScript(() => {
+    globalThis.sounds = 0;
+    globalThis.isHidden = true;
+    localStorage.setItem('octurn-sound', 'yes');
+    Object.defineProperty(document, 'hidden', {get: () => globalThis.isHidden});
+    const Sound = AudioContext;
+    globalThis.AudioContext = class extends Sound {
+      constructor() {
+        super();
+        globalThis.sounds += 1;
+      }
+    };
+  });
+  await page.goto(url);
+  await page.locator('[data-panel=form]').waitFor();
+  return page;
+}
+
+/** The end of a scan is marked on a hidden tab, until it is looked at, and heard where that was chosen. */
+async function seeEnd(page) {
+  await page.waitForFunction(() => document.title.startsWith('✓ '));
+  assert.match(await page.locator('link[rel=icon]').getAttribute('href'), /done/);
+  assert.equal(await page.evaluate(() => globalThis.sounds), 1);
+  await page.evaluate(() => {
+    globalThis.isHidden = false;
+    document.dispatchEvent(new Event('visibilitychange'));
+  });
+  assert.doesNotMatch(await page.title(), /✓/);
+  assert.doesNotMatch(await page.locator('link[rel=icon]').getAttribute('href'), /done/);
+  await page.context().close();
+}
+
+/**
+ * A wall on the platform, 100 mm wide, as a binary STL.
+ * @param {number} height  millimetres @param {number} columns  of squares @param {number} rows
+ */
+function wall(height, columns, rows) {
+  const triangles = 2 * columns * rows;
+  const file = Buffer.alloc(84 + 50 * triangles);
+  file.writeUInt32LE(triangles, 80);
+  for (let index = 0; index < triangles; ++index) {
+    const square = index >> 1;
+    const [column, row] = [square % columns, Math.floor(square / columns)];
+    const corners = index % 2 === 0 ? [[0, 0], [1, 0], [1, 1]] : [[0, 0], [1, 1], [0, 1]];
+    corners.forEach(([right, up], corner) => {
+      const [x, z] = [100 * (column + right) / columns - 50, height * (row + up) / rows];
+      [x, 0, z].forEach((value, axis) => file.writeFloatLE(value, 84 + 50 * index + 12 + 12 * corner + 4 * axis));
+    });
+  }
+  return file;
+}
+
+/** The number of the view's pixels in the model's warm colour, on a bluish background. */
+async function modelPixels(page) {
+  const png = await page.locator('#view').screenshot();
+  return page.evaluate(async (base64) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (byte) => byte.charCodeAt(0))]));
+    const context = new OffscreenCanvas(bitmap.width, bitmap.height).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const {data} = context.getImageData(0, 0, bitmap.width, bitmap.height);
+    return data.filter((red, i) => i % 4 === 0 && red > 60 && red > data[i + 2]).length;
+  }, png.toString('base64'));
+}
+
+/** A large model's coarse mesh, here a wall of a third of its height, is drawn only while a pointer drags it. */
+async function dragLarge(browser, url, id) {
+  const {page} = await openPage(browser, 'about:blank');
+  await page.route('**/Scan.stl', (route) => route.fulfill({body: wall(90, 320, 320), contentType: 'model/stl'}));
+  await page.route('**/coarse.stl', (route) => route.fulfill({body: wall(30, 1, 1), contentType: 'model/stl'}));
+  await page.goto(`${url}#${id}`);
+  await page.locator('#tools').waitFor();
+  const whole = await modelPixels(page);
+  assert.ok(whole > 1000, `${whole}`);
+  const {x, y, width, height} = await page.locator('#view').boundingBox();
+  await page.mouse.move(x + width / 2, y + height / 2);
+  await page.mouse.down();
+  await page.mouse.move(x + width / 2 + 2, y + height / 2);
+  while (await modelPixels(page) > 0.6 * whole) {
+    // the frame with the coarse mesh is not drawn yet
+  }
+  await page.mouse.up();
+  while (await modelPixels(page) < 0.9 * whole) {
+    // nor the one with the model
+  }
+  await page.context().close();
 }
 
 test('what matters is in sight on every screen', async (t) => {
@@ -136,8 +247,13 @@ test('what matters is in sight on every screen', async (t) => {
   await page.unrouteAll({behavior: 'ignoreErrors'});
   await page.context().close();
   await t.test('warnings, until they are dismissed', () => warnings(browser, scanner.url));
+  const hidden = await openHidden(browser, scanner.url);
   const {id} = await scan(scanner, {snapshots: 8, leaf_size_mm: 2});
+  await t.test('the end of a scan, on its tab', () => seeEnd(hidden));
   const opened = await openPage(browser, `${scanner.url}#${id}`);
   await t.test('model, verdict and Download at the end of a scan', () => result(opened.page));
+  await t.test('all of it in large letters', () => largeLetters(opened.page, 'result'));
   assert.deepEqual(opened.faults, []);
+  await opened.page.context().close();
+  await t.test('a large model that is dragged, by its coarse mesh', () => dragLarge(browser, scanner.url, id));
 });

@@ -3,7 +3,8 @@ import {test} from 'node:test';
 
 import * as requests from '../../web/api/api_calibration.js';
 import * as texts from '../../web/scanner/calibration.js';
-import {distanceOf, distanceText} from '../../web/sensor/depth.js';
+import {distanceText} from '../../web/sensor/depth.js';
+import {distanceOf} from '../../web/sensor/depth_picture.js';
 import {errorColour} from '../../web/sensor/map_picture.js';
 import {calibration, turnReport} from './examples.js';
 
@@ -25,7 +26,7 @@ test('a measured rig says when, and how exactly', () => {
 test('a pose set by hand has no figures', () => {
   const summary = texts.summaryOf({...calibration, source: 'page', at: '2026-11-21T08:15:00Z'});
   assert.equal(summary.tone, 'idle');
-  assert.match(summary.text, /only a turn/);
+  assert.match(summary.text, /Only a turn/);
 });
 
 test('progress is of the kind that runs, grows, and never ends before the end', () => {
@@ -148,7 +149,7 @@ const looked = (changes) => texts.outcomeOf({...calibration, run: {...run, kind:
 test('a look at a wall says what it took out, and asks for a second one once', () => {
   const first = looked({state: 'done', report: wallReport});
   assert.equal(first.title, 'The sensor’s unevenness is corrected');
-  assert.match(first.detail, /0\.81 steps .* within 0\.21/);
+  assert.match(first.detail, /1\.3 mm at 75 cm, .* within 0\.3 mm/);
   assert.match(first.hint, /second view/);
   assert.equal(looked({state: 'done', report: {...wallReport, walls: [{distance_m: 0.9}, {distance_m: 0.65}]}}).hint, '');
   assert.equal(texts.outcomeOf({...calibration, run: {...run, kind: 'wall', state: 'done', report: wallReport}}, 'turn'), null);
@@ -163,7 +164,7 @@ test('a wall that is none is told in the scanner\'s words', () => {
 test('a map is told with its date, its sensor and what it did', () => {
   assert.match(texts.mapText(calibration), /^Not done/);
   const map = {serial: 'A00361', at: '2026-11-21T08:15:00Z', rms_before: 0.812, rms_after: 0.214};
-  assert.match(texts.mapText({...calibration, sensor_map: map}), /^Done on .*21.* for sensor A00361: 0\.81 → 0\.21 steps/);
+  assert.match(texts.mapText({...calibration, sensor_map: map}), /^Done on .*21.* for sensor A00361: 1\.3 mm → 0\.3 mm at 75 cm/);
 });
 
 test('measured optics are told with their date and sigmas, and nothing without them', () => {

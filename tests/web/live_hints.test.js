@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {hintOf, movedShare, seenOf, steadyHint} from '../../web/sensor/live_hints.js';
+import {hintOf, steadyHint} from '../../web/sensor/live_hints.js';
+import {movedShare, seenOf} from '../../web/sensor/live_picture.js';
 import {poseOf, toPlatform} from '../../web/base/pose.js';
 
 const sensor = {width: 640, height: 480, fx: 576, fy: 576, cx: 320, cy: 240};

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {brighten, colour, colourOf} from '../../web/sensor/depth.js';
+import {brighten, colour, colourOf} from '../../web/sensor/depth_picture.js';
 import {ticks} from '../../web/scan/dial.js';
 
 /** Relative luminance of sRGB (IEC 61966-2-1). */

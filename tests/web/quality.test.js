@@ -69,5 +69,5 @@ test('what a calibration found is worded with its values, also where the verdict
   assert.equal(detailOf('focal-length', {shorter_share: 0.021, seen_px: 562.4, told_px: 574}),
       'The sensor’s focal length is 2.1% shorter than configured: 562 pixels instead of 574.');
   assert.equal(detailOf('no-map', {unevenness_disparity: 0.456}),
-      'One look at a bare wall makes models more exact: the flat platform looks uneven by 0.46 steps of disparity.');
+      'One look at a bare wall makes models more exact: the flat platform looks uneven by 0.7 mm at 75 cm.');
 });

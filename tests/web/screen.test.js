@@ -95,14 +95,16 @@ test('a scan without a model says why, and what of it is kept', () => {
 test('while the scanner is away the page keeps what it knew, and says so', () => {
   const {isAway, title, panel, stage, devices, progress} = screenOf(states.withoutAnswer(states.withoutAnswer(scanning({}))));
   assert.deepEqual({isAway, title, panel, isLive: stage.isLive}, {isAway: true, title: 'No answer · Octurn', panel: 'progress', isLive: false});
-  assert.deepEqual(devices.map(({tone, text}) => `${tone} ${text}`), ['idle not known', 'idle not known']);
+  assert.deepEqual(devices.map(({tone, text}) => `${tone} ${text}`), ['idle unknown', 'idle unknown']);
   assert.deepEqual([progress.isStale, progress.left], [true, '']);
 });
 
-test('a missing sensor is told before a scan is tried', () => {
+test('a missing sensor is told before a scan is tried, and none can be started', () => {
   const sensor = {state: 'missing', name: '', simulated: false, message: 'no sensor: is it plugged in?'};
-  const {faults, devices, stage} = screenOf(states.withStatus(states.initial, {...status, sensor}));
+  const {faults, devices, stage, canStart} = screenOf(states.withStatus(states.initial, {...status, sensor}));
   assert.deepEqual(faults, ['No sensor: is it plugged in?']);
+  assert.equal(canStart, false);
+  assert.ok(screenOf(idle).canStart);
   assert.deepEqual(devices.map(({tone}) => tone), ['bad', 'good']);
   assert.equal(stage.isLive, false);
 });

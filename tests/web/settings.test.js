@@ -27,7 +27,7 @@ test('a preset leaf size is among the choices, also one without a name, coarse t
 });
 
 test('the angle between stops has one decimal at most', () => {
-  assert.deepEqual([36, 7, 200].map(stepText), ['one each 10°', 'one each 51.4°', 'one each 1.8°']);
+  assert.deepEqual([36, 7, 200].map(stepText), ['one every 10°', 'one every 51.4°', 'one every 1.8°']);
 });
 
 test('the slider of the snapshots goes as far as the field beside it', async () => {

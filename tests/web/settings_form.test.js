@@ -23,7 +23,7 @@ test('changes of several settings are one', () => {
 test('a value that the scanner would refuse is refused before', () => {
   const whole = {type: 'integer', description: '', minimum: 1, maximum: 200};
   assert.equal(complaintOf(whole, 36), '');
-  assert.match(complaintOf(whole, 201), /from 1 to 200/);
+  assert.match(complaintOf(whole, 201), /between 1 and 200/);
   assert.match(complaintOf(whole, 1.5), /whole number/);
   assert.match(complaintOf({...whole, type: 'number'}, null), /A number/);
   assert.equal(complaintOf({...whole, type: 'number'}, 1.5), '');
@@ -37,7 +37,7 @@ test('a value that the scanner would refuse is refused before', () => {
 test('a problem is told beside the setting that it is about', () => {
   const outOfRange = {detail: '“turntable.gear_ratio” must be from 0.001 to 1000.', parameters: {key: 'turntable.gear_ratio', minimum: 0.001, maximum: 1000}};
   assert.equal(keyOf(outOfRange), 'turntable.gear_ratio');
-  assert.equal(reasonOf(outOfRange), 'It must be from 0.001 to 1000.');
+  assert.equal(reasonOf(outOfRange), 'It must be between 0.001 and 1000.');
   assert.equal(keyOf({detail: '"scan.method" is 3: must be text'}), 'scan.method');
   assert.equal(reasonOf({detail: '"scan.method" is 3: must be text'}), 'It must be text.');
   assert.equal(keyOf({detail: 'the disk is full'}), null);

@@ -1,13 +1,16 @@
 import assert from 'node:assert/strict';
-import {readFile} from 'node:fs/promises';
+import {readdir, readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
-const style = await readFile(new URL('../../web/style.css', import.meta.url), 'utf8');
+const page = new URL('../../web/', import.meta.url);
+const style = await readFile(new URL('style.css', page), 'utf8');
 
-/** The custom colour properties of both schemes: the first :root is light, the second overrides it for dark. */
-const [light, darkOver] = style.split(':root {').slice(1, 3).map((block) =>
-  Object.fromEntries([...block.slice(0, block.indexOf('}')).matchAll(/--([a-z-]+): (#[0-9a-f]{6});/g)].map(([, name, colour]) => [name, colour])));
-const schemes = {light, dark: {...light, ...darkOver}};
+/** The custom colour properties of both schemes. */
+const pairs = [...style.matchAll(/--([a-z-]+): light-dark\((#[0-9a-f]{6}), (#[0-9a-f]{6})\);/g)];
+const schemes = {
+  light: Object.fromEntries(pairs.map(([, name, light]) => [name, light])),
+  dark: Object.fromEntries(pairs.map(([, name, , dark]) => [name, dark])),
+};
 
 /** Relative luminance (WCAG 2.2). @param {string} colour */
 function luminanceOf(colour) {
@@ -41,6 +44,15 @@ for (const [scheme, colours] of Object.entries(schemes)) {
     }
   });
 }
+
+test('texts follow the font size of the browser: no style gives one in pixels', async () => {
+  const files = (await readdir(page)).filter((name) => name.endsWith('.css'));
+  assert.ok(files.length > 5);
+  for (const file of files) {
+    const rules = await readFile(new URL(file, page), 'utf8');
+    assert.doesNotMatch(rules, /font(-size)?:[^;}]*\dpx/, file);
+  }
+});
 
 test('controls are drawn with the line that can be seen', async () => {
   const scan = await readFile(new URL('../../web/scan.css', import.meta.url), 'utf8');

@@ -160,7 +160,7 @@ test('a sentence that is not known stays as it is, whatever is in it', () => {
 });
 
 test('numbers in a text lose none of their digits', () => {
-  assert.equal(text('settings.range', {minimum: 0.001, maximum: 1000}), 'It must be from 0.001 to 1000.');
+  assert.equal(text('settings.range', {minimum: 0.001, maximum: 1000}), 'It must be between 0.001 and 1000.');
   assert.equal(text('count.snapshots', {count: 1}), '1 snapshot');
   assert.equal(text('count.snapshots', {count: 0}), '0 snapshots');
 });

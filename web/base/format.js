@@ -25,6 +25,12 @@ export const size = (sides, digits = 1) => `${sides.map((side) => fixed(side, di
 /** @param {number} value @param {number} [digits]  after the point; by default as many as a length needs: 0.52 mm, 18.4 mm */
 export const millimetres = (value, digits = Math.abs(value) < 9.995 ? 2 : 1) => `${fixed(value, digits)} mm`;
 
+/**
+ * An error of a Kinect's disparity, as the distance that it makes at 75 cm, where objects stand.
+ * @param {number} steps  of 1/345.489 per metre (core/include/octurn/sensor_map.hpp)
+ */
+export const disparity = (steps) => millimetres(steps * 0.75 ** 2 / 345.489 * 1000, 1);
+
 /** A leaf's side. @param {number} value  millimetres */
 export const leaf = (value) => `${number(value)} mm`;
 

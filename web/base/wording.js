@@ -1,8 +1,8 @@
 // The page's own texts for messages of the scanner: reasons of a verdict, and refusals. A text's key consists of the message's code and
 // the names of its parameters, which together identify the sentence. Without such a text the scanner's own sentence is shown.
 
-import {degrees, leaf, millimetres, number, percent} from './format.js';
-import {fixed, isText, text} from './texts.js';
+import {degrees, disparity, leaf, millimetres, number, percent} from './format.js';
+import {isText, text} from './texts.js';
 
 /** @typedef {Record<string, number | string>} Parameters  by name; the name ends with the unit */
 /** @typedef {{code: string, detail: string, parameters?: Parameters}} Said */
@@ -15,7 +15,7 @@ function valueText(name, value) {
     case 'deg': return degrees(value, name === 'gap_deg' ? 0 : 1);
     case 'share': return percent(value, value < 0.1 ? 1 : 0);
     case 'mb': return `${number(value)} MB`;
-    case 'disparity': return fixed(value, 2);
+    case 'disparity': return disparity(value);
     case 'px': return number(Math.round(value));
     case 'triangles': return number(value);
     case 'cm3': return `${number(value)} cm³`;

@@ -1,7 +1,7 @@
 // Measuring between two points of a model. Pure; points are millimetres in its frame.
 
 import {millimetres} from '../base/format.js';
-import {text} from '../base/texts.js';
+import {fixed, text} from '../base/texts.js';
 
 /** Adds a point: the second of a pair, or the first of a new one. @param {number[][]} points @param {number[]} point */
 export const withPoint = (points, point) => points.length === 1 ? [...points, point] : [point];
@@ -13,5 +13,6 @@ export function measureText(points) {
   }
   const [a, b] = points;
   const along = a.map((value, axis) => Math.abs(b[axis] - value));
-  return text('view.measured', {distance: millimetres(Math.hypot(...along), 1), along: along.map((value) => millimetres(value, 1)).join(' × ')});
+  const [x, y, z] = along.map((value) => fixed(value, 1));
+  return text('view.measured', {distance: millimetres(Math.hypot(...along), 1), x, y, z});
 }

@@ -2,16 +2,17 @@
 
 import * as api from '../api/api.js';
 import * as requests from '../api/api_calibration.js';
-import {drawDepth, drawLight, drawScale} from '../sensor/depth.js';
+import {drawScale} from '../sensor/depth.js';
 import {element, part, setText, show} from '../base/dom.js';
 import {spaceChosen} from './form.js';
 import {sentence} from '../base/format.js';
-import {hintOf, movedShare, seenOf, steadyHint} from '../sensor/live_hints.js';
+import {hintOf, steadyHint} from '../sensor/live_hints.js';
 import {drawLines, prepareDistance} from '../sensor/rig_picture.js';
 import {text} from '../base/texts.js';
 
-/** @typedef {import('../sensor/live_hints.js').Rig} Rig */
-/** @typedef {import('../sensor/live_hints.js').Seen} Seen */
+/** @typedef {import('../sensor/live_picture.js').Rig} Rig */
+/** @typedef {import('../sensor/live_worker.js').Reading} Reading */
+/** @typedef {import('../sensor/live_worker.js').Request} Request */
 
 const betweenPictures = 250;   // milliseconds; the scanner may be busy with a scan
 const betweenAttempts = 2000;  // milliseconds, while there is no picture
@@ -48,15 +49,30 @@ function rigNow() {
   return known && clip_mm ? {...known, clip_mm} : null;
 }
 
-/** @type {{brightness: Uint8Array, seen: Seen} | null} the previous picture */
-let before = null;
+/** @type {Worker | undefined} */
+let reader;
+
+/**
+ * Has the worker read a picture. One is read at a time.
+ * @param {Request} request @returns {Promise<Reading>} rejects if it is not a picture
+ */
+function read(request) {
+  const worker = reader ??= new Worker(new URL('../sensor/live_worker.js', import.meta.url), {type: 'module'});
+  return new Promise((resolve, reject) => {
+    worker.onmessage = ({data}) => data.error ? reject(new Error(data.error)) : resolve(data);
+    worker.onerror = () => {
+      reader = undefined;  // it did not arrive: another one is asked for with the next picture
+      reject(new Error('worker'));
+    };
+    worker.postMessage(request);
+  });
+}
+
 let steady = steadyHint();
 
-/** @param {Uint8Array} brightness @param {Seen | null} seen @param {Rig | null} rig */
-function showHint(brightness, seen, rig) {
+/** @param {Reading} reading @param {Rig | null} rig */
+function showHint({seen, moved}, rig) {
   const isIdle = element('stage').dataset.hints === 'yes' && element('stage').dataset.live === 'yes';
-  const moved = seen && before ? movedShare(brightness, before.brightness, seen, before.seen) : 0;
-  before = seen && {brightness, seen};
   if (!isIdle) {
     steady = steadyHint();
   }
@@ -73,31 +89,35 @@ function showHint(brightness, seen, rig) {
 /** @type {(brightness: Uint8Array) => void} */
 let seeDistances = () => {};
 
+/** Why there is no picture. What the form says of a device is not said twice. @param {unknown} error */
+function troubleText(error) {
+  if (!element('faults').hidden) {
+    return text('stage.none');
+  }
+  const {detail, title, hint} = error instanceof api.Problem ? error :
+    new api.Problem('picture', text('problem.picture'));
+  return [detail || title, hint].map(sentence).join(' ');
+}
+
 async function showPicture() {
   try {
     await askForRig();
     const canvas = element('depth');
-    if (element('stage').dataset.sees === 'light') {
-      await drawLight(canvas, await api.preview());
-      show(element('no-picture'), false);
-      return betweenPictures;
-    }
-    const rig = rigNow();
-    /** @type {Seen | null} */
-    let seen = null;
-    const brightness = await drawDepth(canvas, await api.preview(), (picture) => {
-      seen = rig && seenOf(picture, canvas.width, rig);
-      return seen?.inside ?? null;
-    });
-    show(element('live-lines'), rig !== null);
-    rig && drawLines(element('live-lines'), rig);
-    seeDistances(brightness);
-    showHint(brightness, seen, rig);
+    const {width, height} = canvas;
+    const isLight = element('stage').dataset.sees === 'light';
+    const rig = isLight ? null : rigNow();
+    const reading = await read({png: await api.preview(), width, height, isLight, rig});
+    canvas.getContext('2d').putImageData(new ImageData(reading.pixels, width, height), 0, 0);
     show(element('no-picture'), false);
+    if (reading.brightness) {
+      show(element('live-lines'), rig !== null);
+      rig && drawLines(element('live-lines'), rig);
+      seeDistances(reading.brightness);
+      showHint(reading, rig);
+    }
     return betweenPictures;
   } catch (error) {
-    const {detail, title, hint} = error instanceof api.Problem ? error : new api.Problem('picture', text('problem.picture'));
-    setText(element('no-picture-text'), [detail || title, hint].map(sentence).join(' '));
+    setText(element('no-picture-text'), troubleText(error));
     show(element('no-picture'), true);
     show(element('live-hint'), false);
     return betweenAttempts;

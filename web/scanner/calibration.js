@@ -1,7 +1,7 @@
 // The texts of the page Calibrate. Pure: the scanner's response in, texts and choices out.
 
 import {isCalibrated} from '../api/api_calibration.js';
-import {degrees, millimetres, percent, sentence, when} from '../base/format.js';
+import {degrees, disparity, millimetres, percent, sentence, when} from '../base/format.js';
 import {fixed, text} from '../base/texts.js';
 import {refusalText} from '../base/wording.js';
 
@@ -69,7 +69,7 @@ function flattenedText({rms_before, rms_after, walls}) {
   const [before, after] = [rms_before ?? 0, rms_after ?? 0];
   return {
     title: text('run.flattened'),
-    detail: text('run.flattened-about', {before: fixed(before, 2), after: fixed(after, 2)}),
+    detail: text('run.flattened-about', {before: disparity(before), after: disparity(after)}),
     hint: walls.length > 1 ? '' : text('run.flattened-hint'),
   };
 }
@@ -126,7 +126,8 @@ export const noPosesText = (calibration) => text(isCalibrated(calibration) ? 'po
 
 /** @param {Calibration} calibration */
 export const mapText = ({sensor_map: map}) => map ?
-  text('map.done', {when: when(map.at), serial: map.serial, before: fixed(map.rms_before, 2), after: fixed(map.rms_after, 2)}) : text('map.none');
+  text('map.done', {when: when(map.at), serial: map.serial,
+    before: disparity(map.rms_before), after: disparity(map.rms_after)}) : text('map.none');
 
 /** The measured optics in force, in words; empty without any. @param {Calibration} calibration */
 export const opticsText = ({optics}) => optics ? text('optics.known', {when: when(optics.at), source: text(`optics.${optics.source}`),

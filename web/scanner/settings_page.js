@@ -14,6 +14,7 @@ import {prepareMachine} from './machine.js';
 import {prepareOutgoing} from './outgoing.js';
 import {preparePower} from './power.js';
 import {chooseLanguage, chosenLanguage, languages, text} from '../base/texts.js';
+import {chooseTheme, chosenTheme} from '../base/theme.js';
 import {prepareTurntable} from './turntable.js';
 
 /** @typedef {import('../api/api_settings.js').Configuration} Configuration */
@@ -276,9 +277,16 @@ function prepareLanguage() {
   choice.addEventListener('change', () => chooseLanguage(choice.value || null));
 }
 
+function prepareTheme() {
+  const choice = element('theme');
+  choice.value = chosenTheme() ?? '';
+  choice.addEventListener('change', () => chooseTheme(choice.value || null));
+}
+
 /** Attaches the handlers of settings.html. */
 export function prepare() {
   prepareLanguage();
+  prepareTheme();
   preparePassword();
   prepareMachine();
   element('restore-file').addEventListener('change', restore);

@@ -1,106 +1,23 @@
-// Colours of the depth picture: from deep blue for far readings through teal to warm white for near ones.
+// The depth picture in the page: its distances in words, its scale.
 
+import {brightnessOf, colour, colourOf, decoded, faintest, range} from './depth_picture.js';
 import {fixed, text} from '../base/texts.js';
-
-/** Colours at equal steps of brightness, far to near. */
-const stops = [[13, 38, 66], [14, 82, 105], [28, 130, 130], [98, 182, 143], [196, 221, 150], [255, 244, 214]];
-const faintest = 24;  // brightness of the farthest reading (API.md); 0 is no reading
-
-/** @param {number} brightness  0 to 255 @returns {number[]} red, green, blue */
-export function colourOf(brightness) {
-  const at = (Math.max(brightness, faintest) - faintest) / (255 - faintest) * (stops.length - 1);
-  const index = Math.min(Math.floor(at), stops.length - 2);
-  return stops[index].map((value, channel) => Math.round(value + (stops[index + 1][channel] - value) * (at - index)));
-}
-
-const table = Array.from({length: 256}, (_, brightness) => colourOf(brightness));
-
-/**
- * Colours a grey picture in place. Pixels without a reading become transparent.
- * @param {Uint8ClampedArray} pixels  red, green, blue, alpha
- * @param {Uint8Array | null} [chosen]  1 for each pixel to colour; the others stay grey
- */
-export function colour(pixels, chosen = null) {
-  for (let i = 0; i < pixels.length; i += 4) {
-    const brightness = pixels[i];
-    if (brightness === 0) {
-      pixels[i + 3] = 0;
-    } else if (chosen && !chosen[i / 4]) {
-      pixels[i] = pixels[i + 1] = pixels[i + 2] = 24 + 0.42 * brightness;
-    } else {
-      [pixels[i], pixels[i + 1], pixels[i + 2]] = table[brightness];
-    }
-  }
-}
-
-/** The picture's depth range, metres (API.md); brightness is linear in inverse depth between its ends. */
-const range = {near: 0.45, far: 2};
-
-/**
- * @param {number} brightness  0 to 255
- * @returns {number | null} metres, at most the picture's range; null without a reading
- */
-export function distanceOf(brightness) {
-  const share = (brightness - faintest) / (255 - faintest);
-  return brightness === 0 ? null : 1 / (share * (1 / range.near - 1 / range.far) + 1 / range.far);
-}
 
 /** @param {number | null} distance  metres @returns {string} for people */
 export const distanceText = (distance) => distance === null ? text('stage.no-reading') :
   distance >= range.far - 0.01 ? text('stage.beyond', {distance: `${range.far} m`}) : `${fixed(100 * distance, distance < 1 ? 1 : 0)} cm`;
 
-/** @param {Uint8ClampedArray} pixels  of a grey picture: red, green, blue, alpha */
-function brightnessOf(pixels) {
-  const brightness = new Uint8Array(pixels.length / 4);
-  for (let index = 0; index < brightness.length; ++index) {
-    brightness[index] = pixels[4 * index];
-  }
+/**
+ * Draws a depth picture in colour.
+ * @param {HTMLCanvasElement} canvas @param {Blob} png @returns {Promise<Uint8Array>} brightness of each pixel
+ */
+export async function drawDepth(canvas, png) {
+  const picture = await decoded(canvas, png);
+  const brightness = brightnessOf(picture.data);
+  colour(picture.data);
+  /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d')).putImageData(picture, 0, 0);
   return brightness;
 }
-
-/**
- * Brightens a camera's grey picture in place: it is exposed for lasers, and dark. One pixel in a hundred becomes white, but not by
- * more than a factor of 24, as there would be nothing but noise.
- * @param {Uint8ClampedArray} pixels  red, green, blue, alpha
- */
-export function brighten(pixels) {
-  const levels = brightnessOf(pixels).sort();
-  const factor = Math.min(255 / Math.max(levels[Math.floor(0.99 * levels.length)], 1), 24);
-  for (let i = 0; i < pixels.length; i += 4) {
-    pixels[i] = pixels[i + 1] = pixels[i + 2] = factor * pixels[i];
-  }
-}
-
-/**
- * Draws a picture as `change` makes it.
- * @template T
- * @param {HTMLCanvasElement} canvas @param {Blob} png @param {(pixels: Uint8ClampedArray) => T} change @returns {Promise<T>}
- */
-async function draw(canvas, png, change) {
-  const bitmap = await createImageBitmap(png);
-  const context = /** @type {CanvasRenderingContext2D} */ (canvas.getContext('2d', {willReadFrequently: true}));
-  context.clearRect(0, 0, canvas.width, canvas.height);
-  context.drawImage(bitmap, 0, 0, canvas.width, canvas.height);
-  bitmap.close();
-  const picture = context.getImageData(0, 0, canvas.width, canvas.height);
-  const result = change(picture.data);
-  context.putImageData(picture, 0, 0);
-  return result;
-}
-
-/** Draws the picture of a camera with lasers. @param {HTMLCanvasElement} canvas @param {Blob} png */
-export const drawLight = (canvas, png) => draw(canvas, png, brighten);
-
-/**
- * @param {HTMLCanvasElement} canvas @param {Blob} png
- * @param {(brightness: Uint8Array) => Uint8Array | null} [choose]  selects the pixels to colour; null: all
- * @returns {Promise<Uint8Array>} brightness of each pixel
- */
-export const drawDepth = (canvas, png, choose = () => null) => draw(canvas, png, (pixels) => {
-  const brightness = brightnessOf(pixels);
-  colour(pixels, choose(brightness));
-  return brightness;
-});
 
 /** Draws the colour scale. @param {HTMLCanvasElement} canvas  one column for each shade */
 export function drawScale(canvas) {

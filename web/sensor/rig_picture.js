@@ -1,12 +1,13 @@
 // Functions shared by the live depth pictures: the rig's lines, and the distance under the pointer.
 
-import {distanceOf, distanceText} from './depth.js';
+import {distanceText} from './depth.js';
+import {distanceOf} from './depth_picture.js';
 import {part, setText, show} from '../base/dom.js';
 import {overlayOf} from './overlay.js';
 
 export const radius_mm = 150;  // of the platform
 
-/** @param {SVGElement} overlay  over the whole picture @param {import('./live_hints.js').Rig} rig */
+/** @param {SVGElement} overlay  over the whole picture @param {import('./live_picture.js').Rig} rig */
 export function drawLines(overlay, {pose, sensor, clip_mm}) {
   const viewBox = `0 0 ${sensor.width} ${sensor.height}`;
   if (overlay.getAttribute('viewBox') !== viewBox) {

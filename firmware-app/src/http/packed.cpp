@@ -1,9 +1,11 @@
 #include "http/packed.hpp"
 
+#include <unistd.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <optional>
+#include <semaphore>
 
 namespace octurn {
 namespace {
@@ -12,11 +14,15 @@ constexpr std::size_t worth_packing = 1024;  // bytes
 constexpr int gzip_window = 15 + 16;         // largest window, gzip header: zlib.h, deflateInit2
 constexpr int memory_level = 8;              // zlib's default
 
+// A model is compressed in memory: small ones, and few at a time. Larger ones are sent as they are.
+constexpr std::uint64_t max_packed_model = 4'000'000;  // bytes
+std::counting_semaphore<> packing_models{2};
+
 /// Compresses a text; nothing if zlib is out of memory.
-std::optional<std::string> gzip(const std::string& text) {
+std::optional<std::string> gzip(const std::string& text, int level) {
   z_stream stream{};
-  if (::deflateInit2(&stream, Z_DEFAULT_COMPRESSION, Z_DEFLATED, gzip_window, memory_level,
-                     Z_DEFAULT_STRATEGY) != Z_OK) {
+  if (::deflateInit2(&stream, level, Z_DEFLATED, gzip_window, memory_level, Z_DEFAULT_STRATEGY) !=
+      Z_OK) {
     return std::nullopt;
   }
   std::string small(::deflateBound(&stream, text.size()), '\0');
@@ -29,6 +35,32 @@ std::optional<std::string> gzip(const std::string& text) {
   small.resize(stream.total_out);
   ::deflateEnd(&stream);
   return is_whole ? std::optional(std::move(small)) : std::nullopt;
+}
+
+/// Reads a part of a file; nothing if it is shorter than that.
+std::optional<std::string> read_slice(const FileSlice& slice) {
+  std::string bytes(slice.length, '\0');
+  std::size_t read = 0;
+  while (read < bytes.size()) {
+    const ::ssize_t got = ::pread(slice.file.number(), bytes.data() + read, bytes.size() - read,
+                                  static_cast<::off_t>(slice.offset + read));
+    if (got <= 0) {
+      return std::nullopt;
+    }
+    read += static_cast<std::size_t>(got);
+  }
+  return bytes;
+}
+
+/// Compresses a small model's file, at a level that takes a Pi a tenth of a second for a megabyte.
+std::optional<std::string> gzip_model(const FileSlice& model) {
+  if (!packing_models.try_acquire()) {
+    return std::nullopt;
+  }
+  const auto bytes = read_slice(model);
+  auto small = bytes ? gzip(*bytes, Z_BEST_SPEED) : std::nullopt;
+  packing_models.release();
+  return small;
 }
 
 std::string* find_header(Headers& headers, std::string_view name) {
@@ -54,18 +86,26 @@ bool takes_gzip(const Request& request) {
 }
 
 Response packed(const Request& request, Response response) {
-  auto* const body = std::get_if<std::string>(&response.body);
+  const auto* const text = std::get_if<std::string>(&response.body);
+  const auto* const file = std::get_if<FileSlice>(&response.body);
   const std::string* const type = find_header(response.headers, "Content-Type");
-  if (body == nullptr || type == nullptr || *type != "application/json" ||
-      body->size() < worth_packing ||
-      find_header(response.headers, "Content-Encoding") != nullptr) {
+  const bool is_json = text != nullptr && type != nullptr && *type == "application/json" &&
+                       text->size() >= worth_packing;
+  const bool is_model = file != nullptr && type != nullptr && *type == "model/stl" &&
+                        response.status == 200 && file->length <= max_packed_model;
+  if (!(is_json || is_model) || find_header(response.headers, "Content-Encoding") != nullptr) {
     return response;
   }
   response.headers.emplace_back("Vary", "Accept-Encoding");
-  if (std::string* const tag = find_header(response.headers, "ETag")) {
-    tag->insert(0, tag->starts_with("W/") ? "" : "W/");
+  std::optional<std::string> small;
+  if (takes_gzip(request) && (is_json || request.method == "GET")) {
+    small = is_json ? gzip(*text, Z_DEFAULT_COMPRESSION) : gzip_model(*file);
   }
-  if (auto small = takes_gzip(request) ? gzip(*body) : std::nullopt) {
+  std::string* const tag = find_header(response.headers, "ETag");
+  if (tag != nullptr && !tag->starts_with("W/") && (is_json || small)) {
+    tag->insert(0, "W/");  // a model that is sent as it is keeps the strong tag that ranges need
+  }
+  if (small) {
     response.body = std::move(*small);
     response.headers.emplace_back("Content-Encoding", "gzip");
   }

@@ -20,12 +20,16 @@ constexpr int fineness = 2;  // samples of a pixel along each axis
 constexpr int samples = side * fineness;
 constexpr float margin = 0.06F;  // of the side, around the model
 
-// Directions from the model to the eye and to the light, in the model's frame, as in
-// web/model/viewer.js.
+// Directions from the model to the eye and to the lamp, in the model's frame, as in
+// web/model/viewer.js and web/model/light.js.
 const Vector3f to_eye = Vector3f(0.42F, -0.83F, 0.37F).normalized();
-const Vector3f to_light = Vector3f(-0.05F, -0.72F, 0.69F).normalized();
+const Vector3f to_lamp = Vector3f(-0.66F, -0.46F, 0.7F).normalized();
 constexpr std::array clay{216.0F, 210.0F, 196.0F};
-constexpr float ambient = 0.34F;
+// Shares of the light on a facet that faces the lamp: of the room, from all sides and more of it
+// from above, and of the lamp.
+constexpr float room = 0.38F;
+constexpr float room_above = 0.18F;
+constexpr float lamp = 0.5F;
 
 constexpr float nothing = -std::numeric_limits<float>::infinity();
 
@@ -45,9 +49,9 @@ Eigen::Matrix3f make_view() {
 
 Vector3f to_vector(const std::array<float, 3>& corner) { return {corner[0], corner[1], corner[2]}; }
 
-/// Lambertian shading of a facet, from `ambient` to 1.
+/// Lambertian shading of a facet, from 0.2 to about 1.
 float light_on(const Vector3f& normal) {
-  return ambient + (1 - ambient) * std::max(normal.dot(to_light), 0.0F);
+  return room + room_above * normal.z() + lamp * std::max(normal.dot(to_lamp), 0.0F);
 }
 
 /// Twice the signed area of a triangle in the picture, positive if its corners are

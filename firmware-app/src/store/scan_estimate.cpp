@@ -11,15 +11,24 @@ constexpr std::size_t max_similar_scans = 5;  // number of most similar earlier 
 
 // Defaults before the first scan: a Kinect's frame rate; the others are a simulated rig's.
 constexpr double rate_hz = 30;
-constexpr Seconds unmeasured_stop{0.7};
+constexpr Seconds unmeasured_stop{0.5};  // to settle, and to store the snapshot
 constexpr Seconds unmeasured_model{1.0};
-constexpr Seconds unmeasured_snapshot{0.1};
-constexpr double unmeasured_leaf = 0.001;              // metres
+constexpr Seconds unmeasured_snapshot{0.15};  // read twice, as the pose is usually corrected
+constexpr double unmeasured_leaf = 0.001;     // metres
 constexpr double unmeasured_snapshot_bytes = 250'000;  // a Kinect's depth image, as PNG
 constexpr double unmeasured_model_bytes = 1'500'000;   // with leaves of that size
 
 int depth_frames(const ScanSettings& settings) {
   return settings.filter == DepthFilter::basic ? 1 : settings.frames;
+}
+
+/// Duration of the turn to the next stop at the default speeds of StepperSettings: a move of up to
+/// 115 degrees gains speed for half of the way, and brakes for the other half.
+Seconds unmeasured_turn(int snapshots) {
+  constexpr double start = 18;           // degrees per second
+  constexpr double acceleration = 67.5;  // degrees per second squared
+  const double top = std::sqrt(start * start + acceleration * 360 / snapshots);
+  return Seconds{2 * (top - start) / acceleration};
 }
 
 /// Ratio of a model's build time, or bytes, between two leaf sizes.
@@ -97,7 +106,8 @@ ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSe
       });
   const double unmeasured_growth = growth(settings.leaf_size, unmeasured_leaf);
   ScanEstimate estimate{
-      .stop = unmeasured_stop + Seconds(depth_frames(settings) / rate_hz),
+      .stop =
+          unmeasured_turn(snapshots) + unmeasured_stop + Seconds(depth_frames(settings) / rate_hz),
       .build = unmeasured_growth * unmeasured_model + snapshots * unmeasured_snapshot,
       .is_measured = !stops.empty() && !models.empty()};
   double bytes = snapshots * unmeasured_snapshot_bytes + unmeasured_growth * unmeasured_model_bytes;

@@ -29,8 +29,8 @@ struct EarlierScan {
 /// last five of these. For a stop these are scans with the same filter, preferably with about as
 /// many snapshots; for a model scans with the same method, preferably with about as large leaves.
 /// The leaves of a surface, and with them its time and bytes, grow as the square of 1 / leaf size.
-/// Without an earlier scan, a stop takes 0.7 s plus its frames at 30 Hz, and a model with leaves of
-/// 1 mm takes 1 s plus 0.1 s for each snapshot.
+/// Without an earlier scan, a stop takes the turn to it at the default speeds plus 0.5 s plus its
+/// frames at 30 Hz, and a model with leaves of 1 mm takes 1 s plus 0.15 s for each snapshot.
 /// @param earlier  the newest first
 ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSettings& settings);
 

@@ -10,6 +10,9 @@ namespace octurn {
 /// Prints why a model is not good, as one line on standard error; nothing for a good one.
 void print_verdict(const Quality& quality);
 
+/// Prints a model's expected size error as a line on standard error.
+void print_size_error(const SizeError& size);
+
 /// Prints a line of JSON on standard output, or on standard error if the model is there.
 /// @param model  where the model was written; "-" is standard output
 void print_report(const std::filesystem::path& model, const std::string& json);

@@ -189,6 +189,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
   std::optional<Quality> quality;
   if (scan_checks) {
     quality = judge(scan_checks->figures(options.threads), *report, findings);
+    quality->size_error = expected_size_error(scan, report->size);
     print_verdict(*quality);
   }
   if (arguments.json) {

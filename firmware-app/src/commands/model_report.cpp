@@ -29,6 +29,14 @@ void print_size_error(const SizeError& size) {
   std::cerr << text.str();
 }
 
+void print_agreement(const ViewAgreement& agreement) {
+  if (!agreement.is_credible()) {
+    std::cerr << agreement.agreeing << " readings agree with another depth image, and "
+              << agreement.contradicted
+              << " contradict one: look at the depth unit, the intrinsics and the poses.\n";
+  }
+}
+
 void print_report(const std::filesystem::path& model, const std::string& json) {
   const std::string line = json + "\n";
   if (model == "-") {

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "octurn/quality.hpp"
+#include "octurn/tiles.hpp"
 
 namespace octurn {
 
@@ -12,6 +13,10 @@ void print_verdict(const Quality& quality);
 
 /// Prints a model's expected size error as a line on standard error.
 void print_size_error(const SizeError& size);
+
+/// Prints on standard error that the depth images of a scan with free poses do not agree; nothing
+/// if they do.
+void print_agreement(const ViewAgreement& agreement);
 
 /// Prints a line of JSON on standard output, or on standard error if the model is there.
 /// @param model  where the model was written; "-" is standard output

@@ -158,8 +158,13 @@ bool agrees_with_told(const CalibrationReport& report) {
                                  agreeing_sigmas * report.direction_sigma);
 }
 
+/// Metres: a last step of the axis up to this one counts as converged.
+double max_step(double position_sigma) {
+  return std::max(max_last_step, settled_sigmas * position_sigma);
+}
+
 std::string refuse_solution(const CalibrationReport& report, double last_step) {
-  if (last_step > std::max(max_last_step, settled_sigmas * report.position_sigma)) {
+  if (last_step > max_step(report.position_sigma)) {
     return "the axis did not settle";
   }
   const double moved = std::hypot(report.shift, report.lift);
@@ -206,7 +211,10 @@ std::optional<double> take_optics(CalibrationReport& report, TurnViews& views,
   }
   report.optics = solved->optics;
   const double error = std::abs(solved->optics.value.fx / turn.intrinsics.fx - 1);
-  if (solved->significance < min_significance && !solved->is_better) {
+  const bool is_settled = solved->axis.last_step <= max_step(solved->axis.position_sigma());
+  // Known optics are better than a turn's that did not settle.
+  if ((solved->significance < min_significance && !solved->is_better) ||
+      (turn.optics && !is_settled)) {
     return std::nullopt;
   }
   if (error > max_focal_error) {

@@ -336,6 +336,7 @@ TEST(Calibrate, StatesASizeErrorThatCoversTheTrueOneOfMostUnits) {
     return sigma * std::sqrt(3.0) * (2 * static_cast<double>(random()) / 4294967295.0 - 1);
   };
   int covered = 0;
+  int narrow = 0;
   for (int unit = 0; unit < 10; ++unit) {
     turn.intrinsics = told_lens(1 + drawn(0.015), 320 + drawn(8), 240 + drawn(8));
     const double scale = 1 + drawn(0.001);
@@ -349,10 +350,11 @@ TEST(Calibrate, StatesASizeErrorThatCoversTheTrueOneOfMostUnits) {
     const double true_error = 0.15 * std::abs(scale * Intrinsics().fx / used - 1);
     const auto stated = expected_size_error(scan, {0.05, 0.05, 0.15}, report.optics);
     ASSERT_TRUE(stated);
-    EXPECT_LT(stated->error, 0.002) << unit;
+    narrow += stated->error < 0.002 ? 1 : 0;
     covered += true_error <= stated->error ? 1 : 0;
   }
   EXPECT_GE(covered, 9);
+  EXPECT_GE(narrow, 8) << "a statement that covers everything says nothing";
 }
 
 TEST(Calibrate, SaysWhatOpticsThatItCouldNotApplyMayCost) {

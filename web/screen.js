@@ -79,6 +79,10 @@ function sidesOf(state, scan) {
   return [scan, ...others.filter((side) => side !== null)];
 }
 
+/** @param {import('./api/api.js').Model} model */
+const sizeFacts = ({quality}) => !quality?.size_error ? [] : [{label: text('fact.size-error'), text: text('fact.size-error-of', {
+  error: format.millimetres(quality.size_error.mm, 1), length: format.millimetres(quality.size_error.of_mm, 0)})}];
+
 /** @param {Scan} scan  as shown @param {Scan[]} sides @returns {{label: string, text: string, tone?: Tone}[]} */
 function factsOf(scan, sides) {
   const {model, settings} = scan;
@@ -104,6 +108,7 @@ function factsOf(scan, sides) {
     ...(model.filled_share === null ? [] :
       [{label: text('fact.seen'), text: text('fact.seen-share', {share: format.percent(1 - model.filled_share)})}]),
     {label: text('fact.volume'), text: `${format.number(model.volume_cm3)} cm³`},
+    ...sizeFacts(model),
     ...droppedFacts(model),
     {label: text('fact.detail'), text: text(`fact.${settings.method}`, {leaf: format.leaf(settings.leaf_size_mm)})},
     ...capture,

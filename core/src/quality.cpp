@@ -43,6 +43,25 @@ constexpr double min_dropped = 2e-7;  // cubic metres
 
 constexpr int text_digits = 1;  // of millimetres
 
+// Metres, sigma of the distance between two opposite surfaces of a model: noise and what a map
+// leaves of the sensor's pattern. Without a map the pattern of 0.8 units of disparity remains.
+constexpr double mapped_surface_sigma = 0.00012;
+constexpr double unmapped_surface_sigma = 0.0003;
+constexpr double data_sheet_focal_sigma = 0.015;  // relative, of published units
+constexpr double stated_sigmas = 2;
+
+/// Relative sigma of the focal length with which a pose's snapshots are read.
+/// @param seen  as measured from the snapshots, also where it was not applied
+double focal_sigma(const Scan& scan, const std::optional<SolvedPose>& solved,
+                   const std::optional<SolvedOptics>& seen) {
+  const auto& optics = solved && solved->optics ? solved->optics : scan.optics;
+  const double used = optics ? optics->value.fx : scan.intrinsics.fx;
+  if (seen) {
+    return std::hypot(seen->sigma.fx, seen->value.fx - used) / used;
+  }
+  return optics && optics->sigma.fx > 0 ? optics->sigma.fx / used : data_sheet_focal_sigma;
+}
+
 /// Collects reasons; the worst of them is the verdict.
 class Judgement {
  public:
@@ -83,7 +102,7 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
 
 void judge_findings(Judgement& judgement, std::span<const CalibrationFinding> findings) {
   for (const CalibrationFinding& finding : findings) {
-    if (finding.code == "moved" || finding.code == "focal-length") {
+    if (finding.code == "moved" || finding.code == "focal-length" || finding.code == "optics") {
       judgement.add(Verdict::look, {.code = finding.code,
                                     .detail = finding.detail,
                                     .hint = finding.hint,
@@ -254,6 +273,22 @@ void add_reasons(Quality& quality, Quality other, std::size_t side) {
 std::string_view to_string(Verdict verdict) {
   constexpr std::array<std::string_view, 3> names = {"good", "look", "bad"};
   return names[static_cast<std::size_t>(verdict)];
+}
+
+std::optional<SizeError> expected_size_error(const Scan& scan, const Eigen::Vector3d& size,
+                                             const std::optional<SolvedOptics>& seen) {
+  if (scan.laser || has_free_poses(scan)) {
+    return std::nullopt;
+  }
+  double focal = focal_sigma(scan, scan.solved, seen);
+  for (const ScanPose& pose : scan.poses) {
+    focal = std::max(focal, focal_sigma(scan, pose.solved, {}));
+  }
+  const double length = size.maxCoeff();
+  const double surface = scan.sensor_map ? mapped_surface_sigma : unmapped_surface_sigma;
+  return SizeError{
+      .length = length,
+      .error = stated_sigmas * std::hypot(length * std::hypot(scan.scale_sigma, focal), surface)};
 }
 
 Quality judge(const ScanFigures& scan, const ModelReport& model,

@@ -4,6 +4,7 @@
 
 #include <string>
 
+#include "calibration/optics_files.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
@@ -207,6 +208,62 @@ TEST(CalibrationStore, NamesADamagedFileOfARigWithLasers) {
   const auto damage = find_damaged_calibration(folder.path());
   ASSERT_TRUE(damage);
   EXPECT_NE(damage->find("laser-calibration.json"), std::string::npos) << *damage;
+}
+
+/// A pose that was solved with optics of the sensor A at that time.
+PoseRecord record_with_optics(double x, const std::string& at) {
+  PoseRecord record = record_at(x);
+  record.optics_of = "A";
+  record.optics_at = at;
+  return record;
+}
+
+TEST(CalibrationStore, KeepsTheOpticsWithWhichAPoseHolds) {
+  const TemporaryFolder folder;
+  CalibrationStore(folder.path()).set(record_with_optics(0.1, "2026-11-28T08:00:00Z"));
+  const PoseRecord kept = CalibrationStore(folder.path()).records({}).front();
+  EXPECT_EQ(kept.optics_of, "A");
+  EXPECT_EQ(kept.optics_at, "2026-11-28T08:00:00Z");
+}
+
+// A pose is written before its optics: as after a power cut in between.
+TEST(CalibrationStore, DropsAPoseWhoseOpticsWereNotWritten) {
+  const TemporaryFolder folder;
+  CalibrationStore store(folder.path());
+  store.set(record_at(0.1));
+  store.set(record_with_optics(0.2, "2026-11-28T08:00:00Z"));
+  store.set(record_with_optics(0.3, "2026-11-28T08:00:00Z"));  // confirmed by a later scan
+  store.drop_without_optics("B");
+  EXPECT_EQ(x_in_force(store), 0.3) << "another sensor";
+  store.drop_without_optics("");
+  EXPECT_EQ(x_in_force(store), 0.3) << "nobody knows which sensor";
+  store.drop_without_optics("A");
+  EXPECT_EQ(x_in_force(store), 0.1);
+  EXPECT_EQ(x_in_force(CalibrationStore(folder.path())), 0.1);
+}
+
+TEST(CalibrationStore, KeepsAPoseWithOpticsInForceOrBeforeThose) {
+  const TemporaryFolder folder;
+  CalibrationStore store(folder.path());
+  store.set(record_with_optics(0.2, "2026-11-28T08:00:00Z"));
+  for (const char* at : {"2026-11-28T08:00:00Z", "2026-11-28T09:00:00Z"}) {
+    keep_optics(folder.path(), "A", {.at = at});
+    store.drop_without_optics("A");
+    EXPECT_EQ(x_in_force(store), 0.2);
+  }
+}
+
+TEST(CalibrationStore, TakesAPoseOfAPersonForOneThatHoldsWithAnyOptics) {
+  const TemporaryFolder folder;
+  CalibrationStore store(folder.path());
+  store.set(record_with_optics(0.2, "2026-11-28T08:00:00Z"));
+  store.change({.scale = 1.02}, {});
+  EXPECT_EQ(store.records({}).front().optics_of, "A") << "the same pose, scaled";
+  Eigen::Isometry3d entered = Eigen::Isometry3d::Identity();
+  entered.translation().x() = 0.5;
+  store.change({.platform_from_sensor = entered}, {});
+  store.drop_without_optics("A");
+  EXPECT_EQ(x_in_force(store), 0.5);
 }
 
 }  // namespace

@@ -40,5 +40,14 @@ TEST(QualityJson, ReadsBackWhatItWrote) {
             quality_with_places());
 }
 
+TEST(QualityJson, HasTheExpectedSizeErrorIfThereIsOne) {
+  Quality quality = quality_with_places();
+  EXPECT_FALSE(to_json(quality).contains("size_error"));
+  quality.size_error = SizeError{.length = 0.15, .error = 0.0005};
+  const json written = to_json(quality);
+  EXPECT_EQ(written["size_error"], json::parse(R"({"mm": 0.5, "of_mm": 150})"));
+  EXPECT_EQ(to_quality(JsonValue(written, "quality", ErrorCode::job_malformed)), quality);
+}
+
 }  // namespace
 }  // namespace octurn

@@ -67,12 +67,17 @@ TEST_F(ScanOptics, OfATurnAreKeptForTheNextScan) {
 
   settings = scanner.calibration().in_force(few_snapshots(6));
   const Scan scan = stored(ScannerTest::scan(scanner, settings));
-  EXPECT_EQ(scan.optics, kept.front().optics.value);
+  ASSERT_TRUE(scan.optics);
+  EXPECT_EQ(scan.optics->value, kept.front().optics.value);
+  EXPECT_EQ(scan.optics->sigma, kept.front().optics.sigma);
   EXPECT_EQ(scan.intrinsics.fx, wrong_focal) << "as the sensor reports";
   EXPECT_FALSE(scan.solved && scan.solved->optics);
 
+  EXPECT_EQ(scanner.calibration().records({}).front().optics_at, kept.front().at);
   ASSERT_TRUE(scanner.undo_optics());
   EXPECT_TRUE(scanner.known_sensor()->optics.empty());
+  EXPECT_EQ(scanner.calibration().records({}).front().origin, PoseOrigin::drawing)
+      << "the pose was solved with the optics";
   EXPECT_FALSE(optics_in_force(store_.data(), "simulated-1-perfect"));
 }
 
@@ -94,7 +99,8 @@ TEST_F(ScanOptics, HaveTheScaleInPlaceOfTheDepthUnit) {
   settings.depth_scale = 1.02;
   const Scan scan = stored(ScannerTest::scan(scanner, settings));
   ASSERT_TRUE(scan.optics);
-  EXPECT_EQ(scan.optics->depth_scale, 1.02);
+  EXPECT_EQ(scan.optics->value.depth_scale, 1.02);
+  EXPECT_LT(scan.scale_sigma, 0.002) << "a length told it";
   EXPECT_EQ(scan.intrinsics.depth_unit, Intrinsics{}.depth_unit);
   EXPECT_NEAR(model_intrinsics(scan, scan.shots.front()).depth_unit, 1.02 * Intrinsics{}.depth_unit,
               1e-12);
@@ -111,7 +117,29 @@ TEST_F(ScanOptics, OfAScanThatGoesOnAreThoseThatItWasBegunWith) {
   ASSERT_TRUE(scanner.resume(started.id));
   const Job ended = *scanner.wait_until_done(patience).job;
   EXPECT_EQ(ended.state, JobState::finished) << (ended.failure ? ended.failure->detail : "");
-  EXPECT_EQ(stored(ended).optics, some_optics().optics.value);
+  EXPECT_EQ(stored(ended).optics->value, some_optics().optics.value);
+}
+
+TEST_F(ScanOptics, ThatAreFarOffAreSolvedAgain) {
+  keep_optics(store_.data(), "simulated-1-perfect",
+              {.optics = {.value = {.fx = 585, .fy = 585, .cx = 320, .cy = 240},
+                          .sigma = {.fx = 9, .fy = 9, .cx = 5, .cy = 5, .k1 = 0.05}},
+               .at = "2026-11-28T08:00:00Z"});
+  Scanner scanner(wrong_rig(), {}, store_);
+  ScanSettings settings = few_snapshots(24);
+  settings.depth_scale = 1.01;
+  const Job job = ScannerTest::scan(scanner, settings);
+  const Scan scan = stored(job);
+  ASSERT_TRUE(scan.solved && scan.solved->optics);
+  EXPECT_EQ(scan.solved->optics->value.depth_scale, 1.01);
+  const auto kept = read_optics(store_.data(), "simulated-1-perfect");
+  ASSERT_EQ(kept.size(), 2U);
+  EXPECT_NEAR(kept.front().optics.value.fx, 575.8, 3 * kept.front().optics.sigma.fx);
+  EXPECT_EQ(kept.front().optics.value.depth_scale, 1) << "the length is kept with the pose";
+  ASSERT_TRUE(job.calibration && job.calibration->optics);
+  EXPECT_EQ(job.calibration->optics->value, scan.solved->optics->value);
+  ASSERT_TRUE(job.model && job.model->quality && job.model->quality->size_error);
+  EXPECT_LT(job.model->quality->size_error->error, 0.01 * job.model->quality->size_error->length);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <memory>
 #include <utility>
 #include <variant>
@@ -243,6 +244,79 @@ TEST(Judge, TakesOverWhatTheCalibrationFound) {
   ASSERT_EQ(codes(quality), (Codes{"moved", "stops-disagree"}));
   EXPECT_EQ(quality.reasons[0].parameters, Parameters{});
   EXPECT_EQ(quality.reasons[1].parameters, findings[1].parameters);
+}
+
+TEST(Judge, AsksToLookAtAModelWhoseOpticsAreKnownToBeOff) {
+  const std::vector<CalibrationFinding> findings{{.code = "optics",
+                                                  .detail = "sizes may be wrong by 2.1 %",
+                                                  .parameters = {{"size_share", 0.021}}}};
+  const Quality quality = judge(right_scan(), right_model(), findings);
+  EXPECT_EQ(quality.verdict, Verdict::look);
+  EXPECT_EQ(codes(quality), Codes{"optics"});
+  EXPECT_EQ(quality.reasons.front().parameters, findings.front().parameters);
+}
+
+/// Optics with that focal length and sigma, pixels.
+SolvedOptics optics_of(double focal, double sigma) {
+  return {.value = {.fx = focal, .fy = focal}, .sigma = {.fx = sigma, .fy = sigma}};
+}
+
+/// A scan of a sensor of 576 pixels with a map.
+Scan mapped_scan() {
+  return {.intrinsics = {.fx = 576, .fy = 576},
+          .shots = {Shot{}},
+          .sensor_map = std::make_shared<SensorMap>()};
+}
+
+/// The expected error of 150 mm, in millimetres.
+double error_of_150_mm(const Scan& scan, const std::optional<SolvedOptics>& seen = {}) {
+  const auto size = expected_size_error(scan, {0.09, 0.15, 0.03}, seen);
+  EXPECT_TRUE(size);
+  EXPECT_EQ(size->length, 0.15);
+  return mm_from_metres(size->error);
+}
+
+TEST(SizeError, IsTheSpreadOfPublishedSensorsUntilSomethingWasMeasured) {
+  // Two sigma of 1 % in scale and 1.5 % in focal length.
+  EXPECT_NEAR(error_of_150_mm(mapped_scan()), 2 * 1.803e-2 * 150, 0.03);
+}
+
+TEST(SizeError, ShrinksWithAKnownLengthAndMeasuredOptics) {
+  Scan scan = mapped_scan();
+  scan.optics = optics_of(590, 0.59);
+  const double unknown_scale = error_of_150_mm(scan);
+  EXPECT_NEAR(unknown_scale, 2 * 0.01 * 150, 0.05);
+  scan.scale_sigma = 0.0015;
+  EXPECT_NEAR(error_of_150_mm(scan), 2 * std::hypot(150 * std::hypot(0.001, 0.0015), 0.12), 0.01);
+  scan.sensor_map.reset();
+  EXPECT_GT(error_of_150_mm(scan), 2 * 0.3) << "the sensor's pattern";
+  scan.solved = SolvedPose{.optics = optics_of(590, 5.9)};
+  EXPECT_GT(error_of_150_mm(scan), 3) << "solved optics are those of the model";
+}
+
+TEST(SizeError, CountsWhatATurnSawOfTheOpticsWhetherItIsAppliedOrNot) {
+  Scan scan = mapped_scan();
+  scan.scale_sigma = 0;
+  EXPECT_LT(error_of_150_mm(scan, optics_of(576.5, 0.6)), 0.6) << "the data sheet is right";
+  EXPECT_NEAR(error_of_150_mm(scan, optics_of(587.5, 0.6)), 2 * 0.02 * 150, 0.05);
+}
+
+TEST(SizeError, IsStatedOfDepthSensorsOnAPlatformOnly) {
+  Scan scan = mapped_scan();
+  scan.laser = LaserCamera{};
+  EXPECT_FALSE(expected_size_error(scan, {0.1, 0.1, 0.1}));
+  scan = mapped_scan();
+  scan.shots.front().object_from_sensor = Eigen::Isometry3d::Identity();
+  EXPECT_FALSE(expected_size_error(scan, {0.1, 0.1, 0.1}));
+}
+
+TEST(SizeError, OfTurnsMadeIntoOneModelIsThatOfTheWorst) {
+  Scan scan = mapped_scan();
+  scan.optics = optics_of(590, 0.59);
+  scan.poses = {ScanPose{}, ScanPose{}};
+  const double known = error_of_150_mm(scan);
+  scan.poses[1].solved = SolvedPose{.optics = optics_of(590, 11.8)};
+  EXPECT_GT(error_of_150_mm(scan), known + 2);
 }
 
 }  // namespace

@@ -119,6 +119,13 @@ async function setScale(scanner, browser) {
   await page.getByRole('button', {name: 'Set the scale'}).click();
   await page.getByText('Models are made 1.20% larger than the sensor tells.').waitFor();
   assert.equal((await ask(scanner, 'calibration')).scale, 1.012);
+  assert.equal(await page.getByLabel('Length on the model, mm').inputValue(), '', 'the lengths are used up');
+  await page.getByLabel('Length on the model, mm', {exact: true}).fill('90.9');
+  await page.getByLabel('Length by calipers, mm', {exact: true}).fill('90');
+  await page.getByRole('button', {name: 'Add a length'}).click();
+  await page.getByLabel('Length on the model, mm (2)').fill('60.6');
+  await page.getByLabel('Length by calipers, mm (2)').fill('60');
+  await page.getByText('The model is off by 0.75 mm on average, and by 0.90 mm at most.').waitFor();
   await page.context().close();
 }
 

@@ -93,11 +93,29 @@ test('each stop has a bar, and one that a finding names is marked', () => {
   assert.equal(bars.label, '4 stops, the largest 1.84° off');
 });
 
+const lengths = (...pairs) => pairs.map(([model_mm, caliper_mm]) => ({model_mm, caliper_mm}));
+
 test('one known length gives the scale, on top of the one in force', () => {
-  assert.deepEqual(texts.scaleOf(100, 101, 1), {scale: 1.01, problem: ''});
-  assert.deepEqual(texts.scaleOf(101, 100, 1.01), {scale: 1, problem: ''});
-  assert.match(texts.scaleOf(100, 112, 1).problem, /12%, more than|12\.0%, more than/);
-  assert.match(texts.scaleOf(Number.NaN, 104, 1).problem, /Both/);
+  assert.deepEqual(texts.scaleOf(lengths([100, 101]), 1), {scale: 1.01, problem: ''});
+  assert.deepEqual(texts.scaleOf(lengths([101, 100]), 1.01), {scale: 1, problem: ''});
+  assert.match(texts.scaleOf(lengths([100, 112]), 1).problem, /12%, more than|12\.0%, more than/);
+  assert.match(texts.scaleOf(lengths([Number.NaN, 104]), 1).problem, /Both/);
+});
+
+test('several known lengths give the scale with the smallest errors, and a row left empty counts for nothing', () => {
+  assert.deepEqual(texts.scaleOf(lengths([100, 101], [50, 50.5], [Number.NaN, Number.NaN]), 1), {scale: 1.01, problem: ''});
+  // 200 mm tell it sixteen times as well as 50 mm: (200 * 202 + 50 * 50) / (200^2 + 50^2)
+  assert.equal(texts.scaleOf(lengths([200, 202], [50, 50]), 1).scale, 1.00941);
+  assert.match(texts.scaleOf(lengths([100, 101], [Number.NaN, 30]), 1).problem, /Both/);
+  assert.match(texts.scaleOf(lengths([Number.NaN, Number.NaN]), 1).problem, /Both/);
+});
+
+test('known lengths tell how exact a model is, before and after the scale', () => {
+  const gauge = texts.gaugeOf(lengths([90.9, 90], [60.6, 60], [Number.NaN, 30]));
+  assert.deepEqual(gauge.off, ['+0.90 mm', '+0.60 mm', '']);
+  assert.equal(gauge.text, 'The model is off by 0.75 mm on average, and by 0.90 mm at most. With the scale set: 0.00 mm and 0.00 mm.');
+  assert.deepEqual(texts.gaugeOf(lengths([29.8, 30])), {off: ['−0.20 mm'], text: 'The model is off by 0.20 mm.'});
+  assert.deepEqual(texts.gaugeOf(lengths([Number.NaN, 30])), {off: [''], text: ''});
 });
 
 test('a scale is told as what it does', () => {

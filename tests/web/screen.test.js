@@ -67,11 +67,18 @@ test('a finished scan shows its size, its facts and its download', () => {
   const facts = Object.fromEntries(details.facts.map(({label, text}) => [label, text]));
   assert.equal(facts.Triangles, '1,011,032');
   assert.equal(facts.Volume, '97.1 cm³');
+  assert.equal(facts['Sizes right within'], undefined, 'of an earlier version');
   assert.equal(facts.Watertight, 'Yes');
   assert.equal(facts.Snapshots, '36 of 36, average of 10');
   assert.deepEqual(details.download, {url: finished.model.url, about: '51 MB'});
   assert.equal(stage.shows, 'model');
   assert.equal(title, 'Owl · Octurn');
+});
+
+test('a finished scan tells within what its sizes are right', () => {
+  const quality = {verdict: 'good', reasons: [], size_error: {mm: 0.6234, of_mm: 150.98}};
+  const {facts} = screenOf(looking({...finished, model: {...finished.model, quality}})).details;
+  assert.equal(facts.find(({label}) => label === 'Sizes right within').text, '±0.6 mm in 151 mm');
 });
 
 test('a model with open edges is not called ready', () => {

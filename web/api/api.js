@@ -31,7 +31,7 @@ import {refusalText} from '../base/wording.js';
  * @property {number | null} [dropped_parts]  parts left out of the model
  * @property {number | null} [dropped_volume_cm3]
  * @property {number | null} filled_share  share of the surface's area that was not observed
- * @property {{verdict: 'good' | 'look' | 'bad', reasons: Reason[]} | null} [quality]
+ * @property {{verdict: 'good' | 'look' | 'bad', reasons: Reason[], size_error?: {mm: number, of_mm: number}} | null} [quality]
  *
  * @typedef {{accepted: boolean, confirms_told: boolean, reason: string, solved: {after_mm: number} | null, findings?: Reason[]}} ScanCalibration
  *

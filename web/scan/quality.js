@@ -22,6 +22,7 @@ const again = {text: text('cure.again'), href: '#'};
 /** @type {Record<string, Action>} */
 const actions = {
   'stops-disagree': calibrate,
+  'optics': calibrate,
   'floats': calibrate,
   'sunk': calibrate,
   'no-map': flatten,

@@ -10,6 +10,7 @@ import {chosenSpace, discardSpace, prepareSpace, showSpace} from '../sensor/clip
 import {element, setText, show} from '../base/dom.js';
 import {sentence} from '../base/format.js';
 import {prepareLens, showLens} from './lens.js';
+import {clearLengths, enteredLengths, prepareLengths} from './lengths.js';
 import {here} from '../places.js';
 import {chosenPose, discard, preparePlacement, showPlacement} from '../sensor/placement_form.js';
 import {preparePicture, showClip, showNoPicture, showPicture, showPoints, showPose} from '../sensor/pose_picture.js';
@@ -103,12 +104,12 @@ async function lookAtSpace() {
 /** @param {Event} event */
 function scale(event) {
   event.preventDefault();
-  const wanted = scaleOf(element('known-model').valueAsNumber, element('known-caliper').valueAsNumber, calibration?.scale ?? 1);
+  const wanted = scaleOf(enteredLengths(), calibration?.scale ?? 1);
   setText(element('known-problem'), wanted.problem);
   if (!wanted.problem) {
     act('failure.scale', async () => {
       await requests.change({scale: wanted.scale});
-      element('known').reset();
+      clearLengths();
     });
   }
 }
@@ -191,6 +192,7 @@ function listen() {
 /** Called once, when the fragment is loaded. */
 export function prepare() {
   preparePicture();
+  prepareLengths();
   preparePlacement({onChange: showPose, onKeep: keep});
   listen();
   prepareSpace({onChange: showClip, onKeep: keepSpace});

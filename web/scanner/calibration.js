@@ -142,18 +142,50 @@ export function warmText(seconds) {
   return text(minutes < 1 ? 'warm.less' : minutes < 10 ? 'warm.short' : 'warm.on', {minutes: text('count.minutes', {count: minutes})});
 }
 
+/** @typedef {{model_mm: number, caliper_mm: number}} KnownLength  of a model, and of its object; NaN: not entered */
+
+/** @param {KnownLength} length */
+const isEntered = ({model_mm, caliper_mm}) => model_mm > 0 && caliper_mm > 0;
+
+/** The factor that fits models to their objects: least squares of the lengths' errors. @param {KnownLength[]} lengths  entered ones */
+const factorOf = (lengths) => lengths.reduce((sum, {model_mm, caliper_mm}) => sum + model_mm * caliper_mm, 0) /
+  lengths.reduce((sum, {model_mm}) => sum + model_mm * model_mm, 0);
+
 /**
- * The scale from a known length, combined with the scale with which the model was made.
- * @param {number} model_mm @param {number} caliper_mm @param {number} scale  in force
+ * The scale from known lengths, combined with the scale with which the model was made.
+ * @param {KnownLength[]} lengths  rows without any number are left out @param {number} scale  in force
  * @returns {{scale: number, problem: string}}
  */
-export function scaleOf(model_mm, caliper_mm, scale) {
-  const wanted = Number((scale * caliper_mm / model_mm).toFixed(5));
-  if (!(model_mm > 0 && caliper_mm > 0)) {
+export function scaleOf(lengths, scale) {
+  const entered = lengths.filter(isEntered);
+  const isHalf = lengths.some((length) => !isEntered(length) && !(Number.isNaN(length.model_mm) && Number.isNaN(length.caliper_mm)));
+  if (entered.length === 0 || isHalf) {
     return {scale, problem: text('scale.both')};
   }
+  const wanted = Number((scale * factorOf(entered)).toFixed(5));
   const isFar = wanted < scaleLimits.min || wanted > scaleLimits.max;
   return {scale: wanted, problem: isFar ? text('scale.far', {share: percent(Math.abs(wanted - 1), 1)}) : ''};
+}
+
+/**
+ * How exact a model is, by known lengths.
+ * @param {KnownLength[]} lengths
+ * @returns {{off: string[], text: string}}  the error of each, and all of them in words; empty where nothing is entered
+ */
+export function gaugeOf(lengths) {
+  const signed = (/** @type {number} */ error) => `${error < 0 ? '−' : '+'}${millimetres(Math.abs(error), 2)}`;
+  const off = lengths.map((length) => isEntered(length) ? signed(length.model_mm - length.caliper_mm) : '');
+  const entered = lengths.filter(isEntered);
+  if (entered.length === 0) {
+    return {off, text: ''};
+  }
+  const described = (/** @type {number} */ factor) => {
+    const errors = entered.map(({model_mm, caliper_mm}) => Math.abs(factor * model_mm - caliper_mm));
+    return {mean: millimetres(errors.reduce((sum, error) => sum + error, 0) / errors.length, 2), worst: millimetres(Math.max(...errors), 2)};
+  };
+  const now = described(1);
+  const {mean: meanScaled, worst: worstScaled} = described(factorOf(entered));
+  return {off, text: text(entered.length === 1 ? 'gauge.one' : 'gauge.all', {...now, meanScaled, worstScaled})};
 }
 
 /** @param {number} scale */

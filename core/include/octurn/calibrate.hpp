@@ -24,14 +24,16 @@ struct CalibrationTurn {
   std::vector<double> angles = {};
   /// Whether the depth images were corrected by a `SensorMap`.
   bool has_sensor_map = false;
-  bool knows_optics = false;  ///< of the depth images: then they are not solved
+  /// Of the sensor, if they were measured before; they are taken out of the depth images. What the
+  /// turn shows is combined with them by their sigmas.
+  std::optional<SolvedOptics> optics = {};
   /// Reads the depth image of a stop. Called once for each, by several threads at once.
   std::function<DepthFrame(std::size_t stop)> read = {};
 };
 
 /// A fault of the rig or of the turn that a new pose does not cure.
 struct CalibrationFinding {
-  /// "slip", "turn-not-whole", "still", "wobble", "moved", "focal-length", "no-map"
+  /// "slip", "turn-not-whole", "still", "wobble", "moved", "focal-length", "optics", "no-map"
   std::string code = {};
   std::string detail = {};           ///< what was found and its size, for people
   std::string hint = {};             ///< what to do about it
@@ -59,10 +61,10 @@ struct CalibrationReport {
   /// little of the object was seen.
   std::vector<double> stop_offsets = {};
   std::vector<CalibrationFinding> findings = {};
-  /// What the turn tells of the optics; nothing if it tells none, or they were known.
+  /// What is known of the optics after the turn; nothing if it tells nothing of them.
   std::optional<SolvedOptics> optics = {};
-  /// Whether they differ from the sensor's own by far more than their sigma. If accepted, the pose
-  /// holds only together with them.
+  /// Whether they differ by far more than their sigma from those with which the turn was read. If
+  /// accepted, the pose holds only together with them.
   bool optics_differ = false;
 
   /// Whether the configured pose is within three sigma of the solved one, or within 0.1 mm and 0.05

@@ -13,6 +13,7 @@
 #include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"
 #include "octurn/model.hpp"
+#include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -29,8 +30,8 @@ std::string_view to_string(Verdict verdict);
 
 /// Why a model is not good.
 struct QualityReason {
-  /// "empty", "stops-disagree", "moved", "floats", "sunk", "little-seen", "filled-far",
-  /// "cut-by-box", "parts-dropped", "part-missing"
+  /// "empty", "stops-disagree", "moved", "focal-length", "optics", "floats", "sunk", "little-seen",
+  /// "filled-far", "cut-by-box", "parts-dropped", "part-missing"
   std::string code = {};
   std::string detail = {};     ///< what was found and its size, for people
   std::string hint = {};       ///< what to do about it
@@ -41,10 +42,19 @@ struct QualityReason {
   bool operator==(const QualityReason&) const = default;
 };
 
+/// By how much a length of a model may differ from the object's: two standard deviations.
+struct SizeError {
+  double length = 0;  ///< metres: the longest side of the model's bounding box
+  double error = 0;   ///< metres
+
+  bool operator==(const SizeError&) const = default;
+};
+
 /// The verdict on a model, and why.
 struct Quality {
   Verdict verdict = Verdict::good;
   std::vector<QualityReason> reasons = {};  ///< in the order of `QualityReason::code`; none if good
+  std::optional<SizeError> size_error = {};
 
   bool operator==(const Quality&) const = default;
 };
@@ -98,6 +108,13 @@ class ScanCheck {
   Box clip_;
   std::vector<std::unique_ptr<Stop>> stops_;
 };
+
+/// The expected size error of a model, from the sigmas of focal length and scale.
+/// @param size  of the model's bounding box, metres
+/// @param seen  what the scan's calibration found of the optics, applied or not
+/// @return nothing for a scan by laser line or with free poses
+std::optional<SizeError> expected_size_error(const Scan& scan, const Eigen::Vector3d& size,
+                                             const std::optional<SolvedOptics>& seen = {});
 
 /// Judges a finished model.
 /// @param model     its figures

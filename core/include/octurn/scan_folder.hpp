@@ -69,13 +69,18 @@ struct ScanPose {
   Box clip = {};  ///< metres, platform frame of this pose
 };
 
+/// The depths of published Kinects are a per cent or two off.
+inline constexpr double unknown_scale_sigma = 0.01;
+
 /// The content of `scan.json` (format "octurn-scan", version 1 or 2).
 struct Scan {
   std::string sensor_name = {};
-  std::string sensor_serial = {};           ///< empty if unknown
-  Intrinsics intrinsics = {};               ///< `depth_unit` is not used by laser line
-  std::optional<LaserCamera> laser = {};    ///< nothing: a depth sensor
-  std::optional<SensorOptics> optics = {};  ///< of a depth sensor, if known before the scan
+  std::string sensor_serial = {};         ///< empty if unknown
+  Intrinsics intrinsics = {};             ///< `depth_unit` is not used by laser line
+  std::optional<LaserCamera> laser = {};  ///< nothing: a depth sensor
+  /// Of a depth sensor, if measured before the scan. Sigmas of 0: the file does not have them.
+  std::optional<SolvedOptics> optics = {};
+  double scale_sigma = unknown_scale_sigma;  ///< of the depths' scale, relative
   /// As configured when the scan was taken; metres.
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   std::optional<SolvedPose> solved = {};

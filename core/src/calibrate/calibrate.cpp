@@ -33,6 +33,8 @@ constexpr double max_position_sigma = 0.0006;  // metres
 // A larger sigma is accepted where the correction is large: a share of how far the pose moves.
 constexpr double worthwhile_sigma = 0.05;
 constexpr double max_direction_sigma_deg = 0.1;
+// Wrong optics do more harm than an axis that is this uncertain: 0.35 mm at a height of 100 mm.
+constexpr double max_direction_sigma_with_optics_deg = 0.2;
 constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 to 0.7 mm
 // The median residual may grow by this factor: the solver minimises weighted squares instead.
 constexpr double may_worsen = 1.02;
@@ -156,8 +158,13 @@ bool agrees_with_told(const CalibrationReport& report) {
                                  agreeing_sigmas * report.direction_sigma);
 }
 
+/// Metres: a last step of the axis up to this one counts as converged.
+double max_step(double position_sigma) {
+  return std::max(max_last_step, settled_sigmas * position_sigma);
+}
+
 std::string refuse_solution(const CalibrationReport& report, double last_step) {
-  if (last_step > std::max(max_last_step, settled_sigmas * report.position_sigma)) {
+  if (last_step > max_step(report.position_sigma)) {
     return "the axis did not settle";
   }
   const double moved = std::hypot(report.shift, report.lift);
@@ -165,7 +172,9 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
     return "the axis is uncertain by " + mm_text(report.position_sigma, text_digits) +
            ": stand another object on the platform";
   }
-  if (report.direction_sigma > radians_from_degrees(max_direction_sigma_deg)) {
+  if (report.direction_sigma > radians_from_degrees(report.optics_differ
+                                                        ? max_direction_sigma_with_optics_deg
+                                                        : max_direction_sigma_deg)) {
     return "the axis is uncertain by " + degrees_text(report.direction_sigma, text_digits) +
            ": stand another object on the platform";
   }
@@ -183,19 +192,29 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   return {};
 }
 
-/// Solves optics and pose together, and takes both if the optics are not the sensor's own.
+/// Whether the optics may be solved: nothing slipped or moved, and the sensor is even. A pattern
+/// that no map has corrected moves the principal point by up to 12 pixels.
+bool shows_optics(const CalibrationTurn& turn, const CalibrationReport& report, bool is_uneven) {
+  const bool is_solvable = !turn.optics || turn.optics->sigma.fx > 0;
+  return is_solvable && !is_uneven && all_stand_as_told(report);
+}
+
+/// Solves optics and pose together, and takes both if the optics are not the told ones.
 /// @return the distance of the axis's last step, metres, if it takes them
 std::optional<double> take_optics(CalibrationReport& report, TurnViews& views,
                                   const TurnReader& reader, const CalibrationTurn& turn,
                                   int threads) {
-  const auto solved = solve_optics(views, reader.samples(), reader.plane(), turn.intrinsics,
+  const auto solved = solve_optics(views, reader.samples(), reader.plane(), turn,
                                    report.platform_from_sensor, threads);
   if (!solved) {
     return std::nullopt;
   }
   report.optics = solved->optics;
   const double error = std::abs(solved->optics.value.fx / turn.intrinsics.fx - 1);
-  if (solved->significance < min_significance) {
+  const bool is_settled = solved->axis.last_step <= max_step(solved->axis.position_sigma());
+  // Known optics are better than a turn's that did not settle.
+  if ((solved->significance < min_significance && !solved->is_better) ||
+      (turn.optics && !is_settled)) {
     return std::nullopt;
   }
   if (error > max_focal_error) {
@@ -251,8 +270,7 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
   double last_step = solution->last_step;
-  // A pattern that no map has corrected moves the principal point by up to 12 pixels.
-  if (!turn.knows_optics && !is_uneven && all_stand_as_told(report)) {
+  if (shows_optics(turn, report, is_uneven)) {
     last_step = take_optics(report, views, reader, turn, threads).value_or(last_step);
   }
   compare_with_told(report, turn.platform_from_sensor);
@@ -265,6 +283,9 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
     return refused(std::move(report), still->reason);
   }
   report.accepted = reason.empty();
+  if (report.optics_differ && !report.accepted) {
+    report.findings.push_back(describe_unused_optics(report.optics->value, turn.intrinsics));
+  }
   return refused(std::move(report), reason);
 }
 

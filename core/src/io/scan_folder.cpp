@@ -128,7 +128,8 @@ Scan scan_from(const json& document) {
             .sensor_serial = std::move(sensor.serial),
             .intrinsics = sensor.intrinsics,
             .laser = std::move(sensor.laser),
-            .optics = sensor.optics};
+            .optics = sensor.optics,
+            .scale_sigma = sensor.scale_sigma};
   for (const JsonValue& shot : root.at("snapshots").elements()) {
     scan.shots.push_back(shot_from(shot, number, scan.laser));
   }
@@ -230,7 +231,8 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
                                     .serial = scan.sensor_serial,
                                     .intrinsics = scan.intrinsics,
                                     .laser = scan.laser,
-                                    .optics = scan.optics})},
+                                    .optics = scan.optics,
+                                    .scale_sigma = scan.scale_sigma})},
       {"snapshots", shots},
   };
   if (!has_free_poses(scan)) {

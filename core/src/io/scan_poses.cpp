@@ -55,7 +55,8 @@ Eigen::Isometry3d model_pose(const Scan& scan, const Shot& shot) {
 std::optional<SensorOptics> model_optics(const Scan& scan, const Shot& shot) {
   const auto& solved =
       scan.poses.empty() ? scan.solved : scan.poses[static_cast<std::size_t>(shot.pose)].solved;
-  return solved && solved->optics ? solved->optics->value : scan.optics;
+  const auto& optics = solved && solved->optics ? solved->optics : scan.optics;
+  return optics ? std::optional(optics->value) : std::nullopt;
 }
 
 Intrinsics model_intrinsics(const Scan& scan, const Shot& shot) {

@@ -18,6 +18,15 @@ constexpr std::size_t max_image_bytes = 256U
 
 bool is_control(char character) { return static_cast<unsigned char>(character) < ' '; }
 
+/// Optics of earlier scans have no sigmas: they are read as 0.
+SolvedOptics known_optics_from(const JsonValue& object) {
+  if (JsonObject(object).value("sigma")) {
+    return solved_optics_from(object);
+  }
+  return {.value = optics_from(object),
+          .sigma = {.fx = 0, .fy = 0, .cx = 0, .cy = 0, .depth_scale = 0}};
+}
+
 }  // namespace
 
 SensorJson sensor_from(const JsonValue& object) {
@@ -34,8 +43,9 @@ SensorJson sensor_from(const JsonValue& object) {
   } else {
     sensor.intrinsics.depth_unit = depth_unit_from(keys);
     if (const auto optics = keys.value("optics")) {
-      sensor.optics = optics_from(*optics);
+      sensor.optics = known_optics_from(*optics);
     }
+    sensor.scale_sigma = keys.number("scale_sigma", 0, 1).value_or(unknown_scale_sigma);
   }
   sensor.serial = keys.text("serial").value_or("");
   return sensor;
@@ -52,7 +62,11 @@ nlohmann::json to_json(const SensorJson& sensor) {
   } else {
     object["depth_unit_m"] = intrinsics.depth_unit;
     if (sensor.optics) {
-      object["optics"] = to_json(*sensor.optics);
+      const bool has_sigmas = sensor.optics->sigma.fx > 0;
+      object["optics"] = has_sigmas ? to_json(*sensor.optics) : to_json(sensor.optics->value);
+    }
+    if (sensor.scale_sigma != unknown_scale_sigma) {
+      object["scale_sigma"] = sensor.scale_sigma;
     }
   }
   if (!sensor.serial.empty()) {

@@ -18,7 +18,8 @@ struct SensorJson {
   std::string serial = {};  ///< empty if there is none
   Intrinsics intrinsics = {};
   std::optional<LaserCamera> laser = {};    ///< none: the sensor measures depth
-  std::optional<SensorOptics> optics = {};  ///< of a depth sensor, if they were known
+  std::optional<SolvedOptics> optics = {};  ///< of a depth sensor, if they were known
+  double scale_sigma = unknown_scale_sigma;
 };
 
 SensorJson sensor_from(const JsonValue& object);

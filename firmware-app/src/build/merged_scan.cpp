@@ -8,6 +8,7 @@
 #include "build/solve_rigs.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "settings/scan_settings.hpp"
 #include "store/stored_scan.hpp"
 
 namespace octurn {
@@ -38,12 +39,21 @@ Scan to_turn(const Scan& scan, int number) {
   return turn;
 }
 
+/// Whether two scans are of one sensor, each with any known length: it changes the depth unit.
+bool can_be_merged(const Scan& one, Scan other) {
+  const double ratio = other.intrinsics.depth_unit / one.intrinsics.depth_unit;
+  if (ratio > min_depth_scale / max_depth_scale && ratio < max_depth_scale / min_depth_scale) {
+    other.intrinsics.depth_unit = one.intrinsics.depth_unit;
+  }
+  return have_same_sensor(one, other);
+}
+
 void append_turns(std::vector<StoredTurn>& turns, const fs::path& folder) {
   const Scan scan = read_scan(folder);
   const auto refuse = [&](const std::string& what, const std::string& hint) {
     throw Error(ErrorCode::scan_malformed, folder.string() + ": " + what, hint);
   };
-  if (!turns.empty() && !have_same_sensor(turns.front().scan, scan)) {
+  if (!turns.empty() && !can_be_merged(turns.front().scan, scan)) {
     refuse("is of another sensor than " + turns.front().folder.string(),
            "Merge scans of one sensor.");
   }
@@ -130,23 +140,34 @@ Shot link_shot(const Shot& shot, const StoredTurn& turn, const fs::path& folder,
   return there;
 }
 
-/// The optics of a turn's models, as solved ones.
-SolvedOptics to_solved_optics(const Scan& turn) {
+/// The optics of a turn's models, relative to the merged scan's depth unit: a known length is in
+/// the unit where the optics were not known, and in their scale where they were.
+SolvedOptics optics_in(const Scan& merged, const Scan& turn) {
   const Intrinsics& lens = turn.intrinsics;
-  return {.value = turn.optics.value_or(
-              SensorOptics{.fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy}),
-          .sigma = {.fx = 0, .fy = 0, .cx = 0, .cy = 0, .depth_scale = 0}};
+  const SolvedOptics own{.value = {.fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy},
+                         .sigma = {.fx = 0, .fy = 0, .cx = 0, .cy = 0, .depth_scale = 0}};
+  SolvedOptics optics =
+      turn.solved && turn.solved->optics ? *turn.solved->optics : turn.optics.value_or(own);
+  optics.value.depth_scale *= lens.depth_unit / merged.intrinsics.depth_unit;
+  return optics;
 }
 
-/// Returns the solved pose of a depth sensor's turn. Known optics that differ from the merged
-/// scan's count as solved, too: a scan has one set.
+bool have_same_optics(const Scan& a, const Scan& b) {
+  return a.optics && b.optics ? a.optics->value == b.optics->value
+                              : a.optics.has_value() == b.optics.has_value();
+}
+
+/// Returns the solved pose of a depth sensor's turn. Optics that differ from the merged scan's
+/// count as solved, too: a scan has one set.
 std::optional<SolvedPose> solved_depth_in(const Scan& merged, const Scan& turn) {
-  if (turn.optics == merged.optics || (turn.solved && turn.solved->optics)) {
+  const bool has_solved_optics = turn.solved && turn.solved->optics;
+  const bool has_same_unit = turn.intrinsics.depth_unit == merged.intrinsics.depth_unit;
+  if (has_same_unit && (has_solved_optics || have_same_optics(turn, merged))) {
     return turn.solved;
   }
   SolvedPose solved =
       turn.solved.value_or(SolvedPose{.platform_from_sensor = turn.platform_from_sensor});
-  solved.optics = to_solved_optics(turn);
+  solved.optics = optics_in(merged, turn);
   return solved;
 }
 

@@ -7,7 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "log.hpp"
+#include "calibration/optics_files.hpp"
+#include "calibration/record_file.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "utc.hpp"
@@ -18,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr std::string_view calibration_format = "octurn-calibration";
 constexpr std::size_t max_records_bytes = std::size_t{1} << 20U;  // 100 times the usual size
 
 fs::path file_in(const fs::path& data, SensorKind kind) {
@@ -27,14 +29,7 @@ fs::path copy_in(const fs::path& data, SensorKind kind) {
   return file_in(data, kind).replace_extension(".last.json");
 }
 
-std::vector<PoseRecord> records_from(const json& document) {
-  JsonObject root(document, ErrorCode::platform_malformed, "");
-  if (const JsonValue format = root.at("format"); format.text() != "octurn-calibration") {
-    format.refuse("\"octurn-calibration\"");
-  }
-  if (const JsonValue version = root.at("version"); version.number() != 1) {
-    version.refuse("1, which this program reads");
-  }
+std::vector<PoseRecord> poses_from(JsonObject& root) {
   std::vector<PoseRecord> records;
   for (const JsonValue& record : root.at("poses").elements()) {
     records.push_back(to_record(record));
@@ -44,24 +39,19 @@ std::vector<PoseRecord> records_from(const json& document) {
 
 /// Returns no records if the file does not exist. @throws Error "platform-malformed", "read-failed"
 std::vector<PoseRecord> read_records(const fs::path& file) {
-  const auto text = read_regular_file(file, max_records_bytes);
-  try {
-    return text ? records_from(parse_json(*text, ErrorCode::platform_malformed, "it"))
-                : std::vector<PoseRecord>{};
-  } catch (const Error& error) {
-    throw Error(error.code(), file.string() + ": " + error.what(), error.hint());
-  }
+  return read_record({.file = file,
+                      .format = calibration_format,
+                      .max_bytes = max_records_bytes,
+                      .malformed = ErrorCode::platform_malformed},
+                     poses_from)
+      .value_or(std::vector<PoseRecord>());
 }
 
 std::vector<PoseRecord> last_good_records(const fs::path& data, SensorKind kind) {
-  for (const fs::path& file : {file_in(data, kind), copy_in(data, kind)}) {
-    try {
-      return read_records(file);
-    } catch (const Error& error) {
-      log::warning("calibration", error.what());
-    }
-  }
-  return {};
+  auto records = last_good([&] { return read_records(file_in(data, kind)); });
+  return records ? *std::move(records) : last_good([&] {
+                                           return read_records(copy_in(data, kind));
+                                         }).value_or(std::vector<PoseRecord>());
 }
 
 bool is_told(const PoseRecord& record) {
@@ -152,6 +142,8 @@ void CalibrationStore::change(const PoseChange& change, const ScanSettings& conf
   }
   if (change.platform_from_sensor) {
     record.platform_from_sensor = *change.platform_from_sensor;
+    record.optics_of.clear();
+    record.optics_at.clear();
   }
   add(record);
 }
@@ -169,6 +161,20 @@ void CalibrationStore::undo(std::string_view camera) {
   write(std::move(all));
 }
 
+void CalibrationStore::drop_without_optics(std::string_view serial) {
+  const std::lock_guard writing(writing_);
+  std::vector<PoseRecord> all = records();
+  const std::vector<OpticsRecord> optics = last_good_optics(data_, serial);
+  const auto holds = std::ranges::find_if(all, [&](const PoseRecord& record) {
+    return serial.empty() || record.optics_of != serial ||
+           std::ranges::count(optics, record.optics_at, &OpticsRecord::at) > 0;
+  });
+  if (holds != all.begin()) {
+    all.erase(all.begin(), holds);
+    write(std::move(all));
+  }
+}
+
 /// `writing_` is held.
 void CalibrationStore::write(std::vector<PoseRecord> records) {
   records = newest_of_each(records);
@@ -176,10 +182,9 @@ void CalibrationStore::write(std::vector<PoseRecord> records) {
   for (const PoseRecord& record : records) {
     poses.push_back(to_json(record));
   }
-  const std::string text =
-      json{{"format", "octurn-calibration"}, {"version", 1}, {"poses", poses}}.dump(1) + "\n";
-  write_file(file_in(data_, kind_), text);
-  write_file(copy_in(data_, kind_), text);
+  for (const fs::path& file : {file_in(data_, kind_), copy_in(data_, kind_)}) {
+    write_record_file(file, calibration_format, {{"poses", poses}});
+  }
   const std::lock_guard lock(mutex_);
   records_ = std::move(records);
 }

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <system_error>
 
+#include "calibration/record_file.hpp"
 #include "calibration/sensor_map_files.hpp"
 #include "octurn/error.hpp"
-#include "octurn/file.hpp"
 #include "octurn/intrinsics_json.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
@@ -19,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr std::string_view lens_format = "octurn-lens";
 constexpr std::size_t max_lens_bytes = std::size_t{1} << 16U;
 constexpr int max_views = 100000;
 
@@ -44,14 +45,7 @@ CameraLens to_sigma(JsonObject& keys) {
           .k2 = keys.at("k2").number(0, max_distortion)};
 }
 
-KeptLens to_kept_lens(const json& document) {
-  JsonObject keys(document, ErrorCode::scan_malformed, "");
-  if (const JsonValue format = keys.at("format"); format.text() != "octurn-lens") {
-    format.refuse("\"octurn-lens\"");
-  }
-  if (const JsonValue version = keys.at("version"); version.number() != 1) {
-    version.refuse("1, which this program reads");
-  }
+KeptLens to_kept_lens(JsonObject& keys) {
   JsonObject sigma(keys.at("sigma"));
   KeptLens kept{.serial = keys.at("serial").text(),
                 .made = keys.at("at").text(),
@@ -71,36 +65,22 @@ fs::path lens_path(const fs::path& data, std::string_view serial) {
 }
 
 void keep_lens(const fs::path& data, std::string_view serial, const LensReport& report) {
-  json document = to_json(KeptLens{.serial = std::string(serial),
-                                   .made = utc_text(std::chrono::system_clock::now(), rfc3339),
-                                   .lens = report.lens,
-                                   .sigma = report.sigma,
-                                   .rms = report.rms,
-                                   .views = report.views});
-  document["format"] = "octurn-lens";
-  document["version"] = 1;
-  const fs::path file = lens_path(data, serial);
-  std::error_code failed;
-  fs::create_directories(file.parent_path(), failed);
-  if (failed) {
-    throw Error(ErrorCode::write_failed, file.string() + ": cannot be written: " + failed.message(),
-                "Look at the disk.");
-  }
-  write_file(file, document.dump(1) + "\n");
+  write_record_file(lens_path(data, serial), lens_format,
+                    to_json(KeptLens{.serial = std::string(serial),
+                                     .made = utc_text(std::chrono::system_clock::now(), rfc3339),
+                                     .lens = report.lens,
+                                     .sigma = report.sigma,
+                                     .rms = report.rms,
+                                     .views = report.views}));
 }
 
 std::optional<KeptLens> find_lens(const fs::path& data, std::string_view serial) {
-  if (serial.empty()) {
-    return std::nullopt;
-  }
-  const fs::path file = lens_path(data, serial);
-  const auto text = read_regular_file(file, max_lens_bytes);
-  try {
-    return text ? std::optional(to_kept_lens(parse_json(*text, ErrorCode::scan_malformed, "it")))
-                : std::nullopt;
-  } catch (const Error& error) {
-    throw Error(error.code(), file.string() + ": " + error.what(), error.hint());
-  }
+  return serial.empty() ? std::nullopt
+                        : read_record({.file = lens_path(data, serial),
+                                       .format = lens_format,
+                                       .max_bytes = max_lens_bytes,
+                                       .malformed = ErrorCode::scan_malformed},
+                                      to_kept_lens);
 }
 
 void remove_lens(const fs::path& data, std::string_view serial) {

@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
-#include <system_error>
 #include <utility>
 
+#include "calibration/record_file.hpp"
 #include "calibration/sensor_map_files.hpp"
-#include "log.hpp"
 #include "octurn/error.hpp"
-#include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/optics_json.hpp"
 
@@ -19,6 +17,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+constexpr std::string_view optics_format = "octurn-optics";
 constexpr std::size_t max_optics_bytes = std::size_t{1} << 18U;  // 30 times the usual size
 
 using OpticsName = std::pair<OpticsOrigin, std::string_view>;
@@ -37,28 +36,12 @@ OpticsRecord to_optics_record(const JsonValue& object) {
       .optics = solved_optics_from(object), .origin = origin->first, .at = keys.at("at").text()};
 }
 
-std::vector<OpticsRecord> optics_records_from(const json& document) {
-  JsonObject root(document, ErrorCode::platform_malformed, "");
-  if (const JsonValue format = root.at("format"); format.text() != "octurn-optics") {
-    format.refuse("\"octurn-optics\"");
-  }
-  if (const JsonValue version = root.at("version"); version.number() != 1) {
-    version.refuse("1, which this program reads");
-  }
+std::vector<OpticsRecord> optics_records_from(JsonObject& root) {
   std::vector<OpticsRecord> records;
   for (const JsonValue& record : root.at("records").elements()) {
     records.push_back(to_optics_record(record));
   }
   return records;
-}
-
-std::vector<OpticsRecord> last_good_optics(const fs::path& data, std::string_view serial) {
-  try {
-    return read_optics(data, serial);
-  } catch (const Error& error) {
-    log::warning("calibration", error.what());
-    return {};
-  }
 }
 
 /// @param records  newest first
@@ -69,18 +52,8 @@ void write_optics(const fs::path& data, std::string_view serial,
   for (const OpticsRecord& record : records) {
     list.push_back(to_json(record));
   }
-  const fs::path file = optics_path(data, serial);
-  std::error_code failed;
-  fs::create_directories(file.parent_path(), failed);
-  if (failed) {
-    throw Error(ErrorCode::write_failed, file.string() + ": cannot be written: " + failed.message(),
-                "Look at the disk.");
-  }
-  write_file(
-      file,
-      json{{"format", "octurn-optics"}, {"version", 1}, {"serial", serial}, {"records", list}}.dump(
-          1, ' ', false, json::error_handler_t::replace) +
-          "\n");
+  write_record_file(optics_path(data, serial), optics_format,
+                    {{"serial", serial}, {"records", list}});
 }
 
 }  // namespace
@@ -93,14 +66,16 @@ std::vector<OpticsRecord> read_optics(const fs::path& data, std::string_view ser
   if (serial.empty()) {
     return {};
   }
-  const fs::path file = optics_path(data, serial);
-  const auto text = read_regular_file(file, max_optics_bytes);
-  try {
-    return text ? optics_records_from(parse_json(*text, ErrorCode::platform_malformed, "it"))
-                : std::vector<OpticsRecord>{};
-  } catch (const Error& error) {
-    throw Error(error.code(), file.string() + ": " + error.what(), error.hint());
-  }
+  return read_record({.file = optics_path(data, serial),
+                      .format = optics_format,
+                      .max_bytes = max_optics_bytes,
+                      .malformed = ErrorCode::platform_malformed},
+                     optics_records_from)
+      .value_or(std::vector<OpticsRecord>());
+}
+
+std::vector<OpticsRecord> last_good_optics(const fs::path& data, std::string_view serial) {
+  return last_good([&] { return read_optics(data, serial); }).value_or(std::vector<OpticsRecord>());
 }
 
 void keep_optics(const fs::path& data, std::string_view serial, const OpticsRecord& record) {
@@ -119,9 +94,14 @@ void undo_optics(const fs::path& data, std::string_view serial) {
   write_optics(data, serial, std::move(records));
 }
 
-std::optional<SensorOptics> optics_in_force(const fs::path& data, std::string_view serial) {
+std::optional<OpticsRecord> optics_record(const fs::path& data, std::string_view serial) {
   const std::vector<OpticsRecord> records = last_good_optics(data, serial);
-  return records.empty() ? std::nullopt : std::optional(records.front().optics.value);
+  return records.empty() ? std::nullopt : std::optional(records.front());
+}
+
+std::optional<SensorOptics> optics_in_force(const fs::path& data, std::string_view serial) {
+  const auto record = optics_record(data, serial);
+  return record ? std::optional(record->optics.value) : std::nullopt;
 }
 
 json to_json(const OpticsRecord& record) {

@@ -37,6 +37,10 @@ std::filesystem::path optics_path(const std::filesystem::path& data, std::string
 /// @throws Error "platform-malformed"  if the file is damaged; "read-failed"
 std::vector<OpticsRecord> read_optics(const std::filesystem::path& data, std::string_view serial);
 
+/// The same; a damaged file is logged, and counts as none.
+std::vector<OpticsRecord> last_good_optics(const std::filesystem::path& data,
+                                           std::string_view serial);
+
 /// Puts optics into force. Of a damaged file no history remains.
 /// @param serial  of the sensor; not empty
 /// @throws Error "disk-full", "write-failed"
@@ -47,7 +51,11 @@ void keep_optics(const std::filesystem::path& data, std::string_view serial,
 /// @throws Error "not-found"  if none are kept; and as `read_optics` and `keep_optics`
 void undo_optics(const std::filesystem::path& data, std::string_view serial);
 
-/// Returns the optics in force. A damaged file is logged, and counts as none.
+/// Returns the record in force. A damaged file is logged, and counts as none.
+std::optional<OpticsRecord> optics_record(const std::filesystem::path& data,
+                                          std::string_view serial);
+
+/// Returns the optics of that record.
 std::optional<SensorOptics> optics_in_force(const std::filesystem::path& data,
                                             std::string_view serial);
 

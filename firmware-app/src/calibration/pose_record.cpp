@@ -94,6 +94,10 @@ json to_json(const PoseRecord& record) {
     object["camera"] = record.camera;
     object["lasers"] = planes_to_json(record.lasers);
   }
+  if (!record.optics_of.empty()) {
+    object["optics_of"] = record.optics_of;
+    object["optics_at"] = record.optics_at;
+  }
   return object;
 }
 
@@ -107,7 +111,9 @@ PoseRecord to_record(const JsonValue& object) {
           .figures = to_figures(keys),
           .scale = keys.at("scale").number(min_depth_scale, max_depth_scale),
           .camera = camera ? camera->text() : std::string(),
-          .lasers = camera ? to_planes(keys.at("lasers")) : std::vector<Laser>()};
+          .lasers = camera ? to_planes(keys.at("lasers")) : std::vector<Laser>(),
+          .optics_of = keys.text("optics_of").value_or(""),
+          .optics_at = keys.text("optics_at").value_or("")};
 }
 
 }  // namespace octurn

@@ -44,6 +44,10 @@ struct PoseRecord {
   double scale = 1;                         ///< factor of the sensor's depths
   std::string camera = {};  ///< serial number of a camera with lasers; empty: of a depth sensor
   std::vector<Laser> lasers = {};  ///< their planes with this pose; empty: those of the settings
+  /// Serial number of the depth sensor with whose optics of the time `optics_at` the pose was
+  /// solved: it holds only with them. Empty: with the sensor's own, or entered by a person.
+  std::string optics_of = {};
+  std::string optics_at = {};
 };
 
 /// Makes the record of an accepted pose, with the current time.

@@ -49,7 +49,7 @@ CalibrationReport solve_pose(const Scan& scan, const SnapshotSource& snapshots, 
                        .platform_from_sensor = scan.platform_from_sensor,
                        .angles = {},
                        .has_sensor_map = scan.sensor_map != nullptr,
-                       .knows_optics = scan.optics.has_value(),
+                       .optics = scan.optics,
                        .read = {}};
   for (const Shot& shot : scan.shots) {
     turn.angles.push_back(shot.angle);
@@ -72,6 +72,7 @@ ScanCalibration to_scan_calibration(const CalibrationReport& report) {
           .confirms_told = report.confirms_told(),
           .reason = report.reason,
           .solved = report.accepted ? std::optional(to_solved_pose(report)) : std::nullopt,
+          .optics = report.optics,
           .findings = report.findings};
 }
 

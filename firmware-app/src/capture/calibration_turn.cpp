@@ -109,7 +109,7 @@ std::optional<TurnReport> measure_turn(const ScanSettings& settings,
   CalibrationTurn turn{.intrinsics = model_intrinsics(scan, {}),
                        .platform_from_sensor = settings.platform_from_sensor,
                        .has_sensor_map = map != nullptr,
-                       .knows_optics = scan.optics.has_value()};
+                       .optics = scan.optics};
   std::vector<DepthFrame> frames;
   for (const std::int64_t position :
        stop_positions(turntable.position(), steps, settings.snapshots)) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -12,9 +13,16 @@ inline Intrinsics scaled(Intrinsics lens, double depth_scale) {
 }
 
 /// The same of known optics, which have the scale in place of the depth unit.
-inline SensorOptics scaled(SensorOptics optics, double depth_scale) {
-  optics.depth_scale *= depth_scale;
+inline SolvedOptics scaled(SolvedOptics optics, double depth_scale) {
+  optics.value.depth_scale *= depth_scale;
   return optics;
+}
+
+/// Returns the relative sigma of a scan's depths. A factor other than 1 comes from a length that
+/// was measured with calipers, and on a model: each to 0.1 mm, of 100 mm.
+inline double scale_sigma(double depth_scale) {
+  constexpr double of_a_known_length = 0.0015;
+  return depth_scale == 1 ? unknown_scale_sigma : of_a_known_length;
 }
 
 }  // namespace octurn

@@ -49,7 +49,7 @@ struct RigOptions {
   /// Settings of a camera with line lasers, which replaces the depth sensor.
   std::optional<LaserSettings> laser = {};
   /// Of the depth sensor, if they are known, with the depth scale; nothing: those that it reports.
-  std::optional<SensorOptics> optics = {};
+  std::optional<SolvedOptics> optics = {};
   /// Functions that open the devices; tests replace them.
   std::function<std::unique_ptr<DepthSensor>(const std::string& uri)> open_sensor =
       octurn::open_sensor;
@@ -74,8 +74,8 @@ class Rig {
   const LaserSettings* laser() const { return options_.laser ? &*options_.laser : nullptr; }
 
   /// The optics of the depth sensor, for scans and turns.
-  const std::optional<SensorOptics>& optics() const { return options_.optics; }
-  void use_optics(const std::optional<SensorOptics>& optics) { options_.optics = optics; }
+  const std::optional<SolvedOptics>& optics() const { return options_.optics; }
+  void use_optics(const std::optional<SolvedOptics>& optics) { options_.optics = optics; }
 
   /// Replaces the lens in the camera's settings.
   void use_lens(const CameraLens& lens);

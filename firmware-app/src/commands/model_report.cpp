@@ -1,7 +1,10 @@
 #include "commands/model_report.hpp"
 
+#include <cmath>
 #include <iostream>
+#include <sstream>
 
+#include "octurn/units.hpp"
 #include "standard_output.hpp"
 
 namespace octurn {
@@ -15,6 +18,15 @@ void print_verdict(const Quality& quality) {
     text += (&reason == quality.reasons.data() ? "" : "; ") + reason.detail;
   }
   std::cerr << text + ".\n";
+}
+
+void print_size_error(const SizeError& size) {
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(1);
+  text << "Its sizes are expected to be right within " << mm_from_metres(size.error) << " mm in "
+       << std::lround(mm_from_metres(size.length)) << " mm.\n";
+  std::cerr << text.str();
 }
 
 void print_agreement(const ViewAgreement& agreement) {

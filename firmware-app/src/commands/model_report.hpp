@@ -11,6 +11,9 @@ namespace octurn {
 /// Prints why a model is not good, as one line on standard error; nothing for a good one.
 void print_verdict(const Quality& quality);
 
+/// Prints a model's expected size error as a line on standard error.
+void print_size_error(const SizeError& size);
+
 /// Prints on standard error that the depth images of a scan with free poses do not agree; nothing
 /// if they do.
 void print_agreement(const ViewAgreement& agreement);

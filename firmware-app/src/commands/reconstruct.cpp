@@ -147,6 +147,15 @@ std::filesystem::path spool_path(const std::filesystem::path& output) {
   return output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
 }
 
+Quality judge_and_print(const std::vector<ScanFigures>& poses, const Scan& scan,
+                        const ModelReport& report,
+                        const std::vector<CalibrationFinding>& findings) {
+  Quality quality = judge(poses, report, findings);
+  quality.size_error = expected_size_error(scan, report.size);
+  print_verdict(quality);
+  return quality;
+}
+
 }  // namespace
 
 void reconstruct(const ReconstructArguments& arguments) try {
@@ -195,8 +204,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
   }
   std::optional<Quality> quality;
   if (scan_checks) {
-    quality = judge(scan_checks->figures(options.threads), *report, findings);
-    print_verdict(*quality);
+    quality = judge_and_print(scan_checks->figures(options.threads), scan, *report, findings);
   }
   std::optional<ViewAgreement> agreement;
   if (report && is_tiled) {

@@ -182,6 +182,9 @@ void scan(const ScanArguments& arguments) {
   hand_over_model(store.model_file(whole.id), arguments.output);
   if (const Model* model = chosen_model(whole); model != nullptr && model->quality) {
     print_verdict(*model->quality);
+    if (model->quality->size_error) {
+      print_size_error(*model->quality->size_error);
+    }
   }
   if (arguments.json) {
     print_report(arguments.output, to_json(whole).dump());

@@ -86,6 +86,7 @@ class Run {
   int added_ = 0;             // snapshots added to the reconstruction
   std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
   EarlyModel early_;          // with the configured pose, while another is solved
+  std::optional<SolvedOptics> seen_optics_;  // as the calibration measured them, applied or not
 };
 
 bool Run::take_snapshots() {
@@ -175,6 +176,7 @@ std::vector<CalibrationFinding> Run::calibrate() {
                  reconstruction_.options().threads, stop_);
   throw_if_stopped(stop_);
   observer_.on_calibrated(solution);
+  seen_optics_ = solution.report.optics;
   if (solution.replaces_told) {
     early_.give_up();
     scan_.solved = solution.solved;
@@ -276,6 +278,7 @@ std::optional<Model> Run::build(Clock::time_point captured,
     return std::nullopt;
   }
   Quality quality = judge(check_.figures(reconstruction_.options().threads), *report, findings);
+  quality.size_error = expected_size_error(scan_, report->size, seen_optics_);
   reconstruction_.add_coarser_reason(quality);
   report->places = {};  // dropped: every request for a job's state copies it
   return Model{.report = *std::move(report),

@@ -334,6 +334,7 @@ bool Scanner::undo_optics() {
   }
   const std::string serial = sensor_serial();
   octurn::undo_optics(store_.data(), serial);
+  calibration_.drop_without_optics(serial);
   remake_sensor_map(store_.data(), serial);
   board_.set_optics(read_optics(store_.data(), serial), find_map_summary(store_.data(), serial));
   return true;

@@ -477,28 +477,38 @@ void Worker::keep_calibration(const ScanSolution& solution) {
           rig_.laser() == nullptr
               ? to_record(report, PoseOrigin::scan, job_.settings.depth_scale)
               : to_record(report, PoseOrigin::scan, rig_.camera().serial(), solution.solved.lasers);
-      ports_.calibration.set(record);
-      keep_optics(report, {.origin = OpticsOrigin::scan, .at = record.at});
+      keep_pose(record, report, OpticsOrigin::scan);
     }
   } catch (...) {
     log::warning("scanner", current_failure().detail);
   }
 }
 
-/// Keeps optics with which a solved pose holds: later scans of this sensor begin with both.
-/// @param record  without the optics
-void Worker::keep_optics(const CalibrationReport& report, OpticsRecord record) try {
-  if (!report.optics_differ || rig_.sensor().serial().empty()) {
+/// Keeps an accepted pose and the optics with which it was solved: later scans of this sensor begin
+/// with both. The pose is written first. It does not hold without these optics, so that after a
+/// power cut in between those before it are in force.
+void Worker::keep_pose(PoseRecord pose, const CalibrationReport& report, OpticsOrigin origin) {
+  const std::string serial = rig_.laser() == nullptr ? rig_.sensor().serial() : "";
+  const bool are_new = report.optics_differ && !serial.empty();
+  const auto kept = optics_record(ports_.store.data(), serial);
+  if (are_new || (kept && rig_.optics())) {
+    pose.optics_of = serial;
+    pose.optics_at = are_new ? pose.at : kept->at;
+  }
+  ports_.calibration.set(pose);
+  if (!are_new) {
     return;
   }
-  const std::string serial = rig_.sensor().serial();
-  record.optics = *report.optics;
-  octurn::keep_optics(ports_.store.data(), serial, record);
-  remake_sensor_map(ports_.store.data(), serial);
+  OpticsRecord record{.optics = *report.optics, .origin = origin, .at = pose.at};
+  record.optics.value.depth_scale = kept ? kept->optics.value.depth_scale : 1;
+  try {
+    keep_optics(ports_.store.data(), serial, record);
+    remake_sensor_map(ports_.store.data(), serial);
+  } catch (...) {
+    log::warning("calibration", current_failure().detail);
+  }
   introduced_.reset();
   introduce_sensor();
-} catch (...) {
-  log::warning("calibration", current_failure().detail);
 }
 
 void Worker::show_rebuilt(int snapshots) {
@@ -717,9 +727,7 @@ void Worker::measure(CalibrationRun& run, const ScanSettings& settings,
   }
   const TurnReport& report = *run.report;
   if (report.calibration.accepted) {
-    const PoseRecord record = to_record(report, settings, rig_);
-    ports_.calibration.set(record);
-    keep_optics(report.calibration, {.origin = OpticsOrigin::turn, .at = record.at});
+    keep_pose(to_record(report, settings, rig_), report.calibration, OpticsOrigin::turn);
   }
   run.state =
       report.calibration.accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
@@ -782,6 +790,9 @@ void Worker::introduce_sensor() {
   KnownSensor known{.serial = is_camera ? rig_.camera().serial() : rig_.sensor().serial(),
                     .since = since};
   try {
+    if (!is_camera) {
+      ports_.calibration.drop_without_optics(known.serial);
+    }
     known.map = find_map_summary(ports_.store.data(), known.serial);
     known.optics = read_optics(ports_.store.data(), known.serial);
     known.lens = is_camera ? octurn::find_lens(ports_.store.data(), known.serial) : std::nullopt;
@@ -879,8 +890,8 @@ void Worker::use_optics(const std::string& begun, const ScanSettings& settings) 
     rig_.use_optics(read_scan(ports_.store.folder(begun)).optics);
     return;
   }
-  const auto kept = optics_in_force(ports_.store.data(), rig_.sensor().serial());
-  rig_.use_optics(kept ? std::optional(scaled(*kept, settings.depth_scale)) : std::nullopt);
+  const auto kept = optics_record(ports_.store.data(), rig_.sensor().serial());
+  rig_.use_optics(kept ? std::optional(scaled(kept->optics, settings.depth_scale)) : std::nullopt);
 }
 
 /// Sets the pose of the rig's camera and the planes of its lasers: those in force for this camera,

@@ -79,7 +79,7 @@ class Worker {
   void show_job();
   void save_progress();
   void keep_calibration(const ScanSolution& solution);
-  void keep_optics(const CalibrationReport& report, OpticsRecord record);
+  void keep_pose(PoseRecord pose, const CalibrationReport& report, OpticsOrigin origin);
   void show_rebuilt(int snapshots);
   std::optional<TurnReport> measure_turn(const ScanSettings& settings, const std::stop_token& stop,
                                          const ScanObserver& observer);

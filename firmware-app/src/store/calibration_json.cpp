@@ -116,12 +116,16 @@ json to_json(const CalibrationReport& report, const std::vector<double>& angles,
 }
 
 json to_json(const ScanCalibration& calibration) {
-  return {{"accepted", calibration.accepted},
-          {"confirms_told", calibration.confirms_told},
-          {"reason", calibration.reason},
-          {"solved", calibration.solved ? to_json(*calibration.solved) : json(nullptr)},
-          {"findings", to_json(calibration.findings)},
-          {"rebuilt", calibration.rebuilt}};
+  json object{{"accepted", calibration.accepted},
+              {"confirms_told", calibration.confirms_told},
+              {"reason", calibration.reason},
+              {"solved", calibration.solved ? to_json(*calibration.solved) : json(nullptr)},
+              {"findings", to_json(calibration.findings)},
+              {"rebuilt", calibration.rebuilt}};
+  if (calibration.optics) {
+    object["optics"] = to_json(*calibration.optics);
+  }
+  return object;
 }
 
 ScanCalibration to_scan_calibration(const JsonValue& object) {
@@ -133,6 +137,9 @@ ScanCalibration to_scan_calibration(const JsonValue& object) {
                               .rebuilt = keys.at("rebuilt").whole_number(0, max_stop)};
   if (const JsonValue solved = keys.at("solved"); !solved.json().is_null()) {
     calibration.solved = to_solved_pose(solved);
+  }
+  if (const auto optics = keys.value("optics")) {
+    calibration.optics = solved_optics_from(*optics);
   }
   return calibration;
 }

@@ -64,9 +64,10 @@ struct Model {
 /// The sensor's pose as solved from a scan's own snapshots.
 struct ScanCalibration {
   bool accepted = false;
-  bool confirms_told = false;             ///< the configured pose is right, and is kept
-  std::string reason = {};                ///< why the solved pose was refused, or empty
-  std::optional<SolvedPose> solved = {};  ///< if accepted
+  bool confirms_told = false;               ///< the configured pose is right, and is kept
+  std::string reason = {};                  ///< why the solved pose was refused, or empty
+  std::optional<SolvedPose> solved = {};    ///< if accepted
+  std::optional<SolvedOptics> optics = {};  ///< as measured, applied or not
   std::vector<CalibrationFinding> findings = {};
   int rebuilt = 0;  ///< snapshots added again so far, with the solved pose
 };

@@ -60,7 +60,12 @@ json to_json(const Quality& quality) {
       reasons.back()["places_mm"] = to_places_mm(reason.places);
     }
   }
-  return {{"verdict", to_string(quality.verdict)}, {"reasons", reasons}};
+  json object{{"verdict", to_string(quality.verdict)}, {"reasons", reasons}};
+  if (quality.size_error) {
+    object["size_error"] = {{"mm", mm_from_metres(quality.size_error->error)},
+                            {"of_mm", mm_from_metres(quality.size_error->length)}};
+  }
+  return object;
 }
 
 Quality to_quality(const JsonValue& object) {
@@ -75,6 +80,11 @@ Quality to_quality(const JsonValue& object) {
          .hint = of_reason.at("hint").text(),
          .parameters = to_parameters(of_reason.value("parameters")),
          .places = places ? to_places(*places) : std::vector<Eigen::Vector3d>{}});
+  }
+  if (const auto size = keys.value("size_error")) {
+    JsonObject of_size(*size);
+    quality.size_error = SizeError{.length = metres_from_mm(of_size.at("of_mm").number()),
+                                   .error = metres_from_mm(of_size.at("mm").number())};
   }
   return quality;
 }

@@ -7,7 +7,9 @@
 #include <random>
 #include <stdexcept>
 
+#include "calibrate/optics_solver.hpp"
 #include "core/calibrate/rendered_turn.hpp"
+#include "octurn/quality.hpp"
 
 namespace octurn {
 namespace {
@@ -283,13 +285,84 @@ TEST(Calibrate, SolvesOpticsOfAnUnevenSensorOnlyWithItsMap) {
   }
 }
 
-TEST(Calibrate, SolvesNoOpticsThatAreKnown) {
+/// Optics that were known to a focal length's sigma of `share`, and to `pixels` of the centre.
+SolvedOptics known_optics(const Intrinsics& lens, double share, double pixels) {
+  const double focal = share * lens.fx;
+  return {.value = {.fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy, .k2 = 0.01},
+          .sigma = {.fx = focal, .fy = focal, .cx = pixels, .cy = pixels, .k1 = 0.02, .k2 = 0.1}};
+}
+
+TEST(Calibrate, SolvesNoOpticsThatAreKnownWithoutSigmas) {
   CalibrationTurn turn = rendered_turn(figure(), 8);
   turn.intrinsics = told_lens(1.02);
-  turn.knows_optics = true;
+  turn.optics = known_optics(turn.intrinsics, 0, 0);
   const CalibrationReport report = calibrate(turn);
   EXPECT_FALSE(report.optics);
   EXPECT_FALSE(report.optics_differ);
+}
+
+TEST(Calibrate, ReplacesKnownOpticsThatAreFarOff) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  turn.intrinsics = told_lens(1.02);
+  turn.optics = known_optics(turn.intrinsics, 0.012, 8);
+  turn.optics->value.k1 = -0.0625;  // taken out of the images
+  const CalibrationReport report = calibrate(turn);
+  EXPECT_TRUE(report.optics_differ);
+  expect_true_optics(report);
+  EXPECT_NEAR(report.optics->value.k1, -0.0625, 3 * report.optics->sigma.k1);
+  EXPECT_EQ(report.optics->value.k2, 0.01) << "no turn shows it";
+}
+
+TEST(Calibrate, CombinesWhatWasKnownWithWhatATurnShowsByTheirSigmas) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  turn.intrinsics = told_lens(1.004);
+  turn.optics = known_optics(turn.intrinsics, 0.015, 8);
+  const CalibrationReport loose = calibrate(turn);
+  EXPECT_TRUE(loose.optics_differ) << "the turn tells far more than was known";
+  turn.optics = known_optics(turn.intrinsics, 0.0005, 0.5);
+  const CalibrationReport tight = calibrate(turn);
+  ASSERT_TRUE(loose.optics && tight.optics);
+  EXPECT_FALSE(tight.optics_differ);
+  EXPECT_LT(tight.optics->sigma.fx, loose.optics->sigma.fx);
+  const double told = turn.intrinsics.fx;
+  EXPECT_LT(std::abs(tight.optics->value.fx - told), std::abs(loose.optics->value.fx - told));
+}
+
+// Ten units drawn from the spread of published ones, and a length known to 0.1 %.
+TEST(Calibrate, StatesASizeErrorThatCoversTheTrueOneOfMostUnits) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  std::mt19937 random(42);
+  const auto drawn = [&](double sigma) {  // uniform: std::normal_distribution differs by library
+    return sigma * std::sqrt(3.0) * (2 * static_cast<double>(random()) / 4294967295.0 - 1);
+  };
+  int covered = 0;
+  int narrow = 0;
+  for (int unit = 0; unit < 10; ++unit) {
+    turn.intrinsics = told_lens(1 + drawn(0.015), 320 + drawn(8), 240 + drawn(8));
+    const double scale = 1 + drawn(0.001);
+    const CalibrationReport report = calibrate(turn);
+    ASSERT_TRUE(report.accepted) << unit << ": " << report.reason;
+    Scan scan{.intrinsics = turn.intrinsics, .scale_sigma = 0.0015, .shots = {Shot{}}};
+    if (report.optics_differ) {
+      scan.solved = SolvedPose{.optics = report.optics};
+    }
+    const double used = report.optics_differ ? report.optics->value.fx : turn.intrinsics.fx;
+    const double true_error = 0.15 * std::abs(scale * Intrinsics().fx / used - 1);
+    const auto stated = expected_size_error(scan, {0.05, 0.05, 0.15}, report.optics);
+    ASSERT_TRUE(stated);
+    narrow += stated->error < 0.002 ? 1 : 0;
+    covered += true_error <= stated->error ? 1 : 0;
+  }
+  EXPECT_GE(covered, 9);
+  EXPECT_GE(narrow, 8) << "a statement that covers everything says nothing";
+}
+
+TEST(Calibrate, SaysWhatOpticsThatItCouldNotApplyMayCost) {
+  const CalibrationFinding unused =
+      describe_unused_optics({.fx = 590.195, .cx = 320, .cy = 240}, Intrinsics());
+  EXPECT_EQ(unused.code, "optics");
+  EXPECT_NEAR(std::get<double>(unused.parameters.at("size_share")), 0.025, 1e-6);
+  EXPECT_NE(unused.detail.find("sizes may be wrong by 2.5 %"), std::string::npos) << unused.detail;
 }
 
 TEST(Calibrate, TellsAFocalLengthThatNoKinectHas) {

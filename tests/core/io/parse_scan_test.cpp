@@ -238,13 +238,26 @@ TEST(ParseScan, TakesOpticsThatWereKnown) {
   EXPECT_FALSE(parse_scan(contract.dump()).optics);
   const Scan scan = parse_scan(with("/sensor/optics", optics));
   ASSERT_TRUE(scan.optics);
-  EXPECT_EQ(scan.optics->fy, 591);
-  EXPECT_EQ(scan.optics->k1, -0.06);
-  EXPECT_EQ(scan.optics->depth_offset_per_m, 0.002);
+  EXPECT_EQ(scan.optics->value.fy, 591);
+  EXPECT_EQ(scan.optics->value.k1, -0.06);
+  EXPECT_EQ(scan.optics->value.depth_offset_per_m, 0.002);
+  EXPECT_EQ(scan.optics->sigma.fx, 0) << "earlier versions did not write it";
   const Intrinsics lens = model_intrinsics(scan, scan.shots.front());
   EXPECT_EQ(lens.cx, 332);
   EXPECT_DOUBLE_EQ(lens.depth_unit, 0.0001012);
   EXPECT_EQ(scan.intrinsics.cx, 320.5);  // as the sensor tells
+}
+
+TEST(ParseScan, TakesTheSigmasOfOpticsAndScale) {
+  json known = optics;
+  known["sigma"] = optics;
+  known["sigma"]["fx"] = 0.75;
+  known["sigma"]["k1"] = 0.01;
+  const Scan scan = parse_scan(with("/sensor/optics", known));
+  EXPECT_EQ(scan.optics->sigma.fx, 0.75);
+  EXPECT_EQ(scan.scale_sigma, unknown_scale_sigma);
+  EXPECT_EQ(parse_scan(with("/sensor/scale_sigma", 0.0015)).scale_sigma, 0.0015);
+  expect_refused(with("/sensor/scale_sigma", -1), "sensor.scale_sigma");
 }
 
 TEST(ParseScan, RefusesOpticsThatAreIncompleteOrOutOfBounds) {

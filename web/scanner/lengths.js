@@ -1,0 +1,48 @@
+// The card with known lengths on the page Calibrate: lengths of a model beside those of its object, and how far the model is off.
+
+import {copyOf, element, part, setText, show} from '../base/dom.js';
+import {when} from '../base/format.js';
+import {text} from '../base/texts.js';
+import {gaugeOf} from './calibration.js';
+
+const maxLengths = 8;
+
+/** @returns {HTMLElement[]} */
+const rows = () => [...element('lengths').querySelectorAll('.length')];
+
+/** The lengths in the form. @returns {import('./calibration.js').KnownLength[]} */
+export const enteredLengths = () => rows().map((row) => ({model_mm: part(row, '.on-model').valueAsNumber, caliper_mm: part(row, '.by-caliper').valueAsNumber}));
+
+function addLength() {
+  const number = rows().length + 1;
+  const row = copyOf('length-row');
+  for (const [input, key] of [['.on-model', 'calibrate.on-model-label'], ['.by-caliper', 'calibrate.by-caliper-label']]) {
+    part(row, input).setAttribute('aria-label', number === 1 ? text(key) : `${text(key)} (${number})`);
+    part(row, input).required = number === 1;
+  }
+  element('lengths').append(row);
+  show(element('add-length'), number < maxLengths);
+}
+
+function showErrors() {
+  const gauge = gaugeOf(enteredLengths());
+  rows().forEach((row, index) => setText(part(row, 'output'), gauge.off[index]));
+  setText(element('gauge'), gauge.text);
+}
+
+/** Empties the form, down to one length. */
+export function clearLengths() {
+  rows().forEach((row) => row.remove());
+  addLength();
+  showErrors();
+}
+
+export function prepareLengths() {
+  clearLengths();
+  element('lengths').addEventListener('input', showErrors);
+  element('add-length').addEventListener('click', addLength);
+  element('print-lengths').addEventListener('click', () => {
+    setText(element('gauge-when'), when(new Date().toISOString()));
+    print();
+  });
+}

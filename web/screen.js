@@ -154,7 +154,7 @@ function formatsOf(endings, {id, model, state, snapshots_done, has_colours}) {
     ...(has_colours ? others : []).map(({format: name, url}) =>
       ({name: text('scan.coloured', {format: name}), title: text('scan.format', {format: text('scan.coloured', {format: name})}), url: `${url}?colour=true`})),
   ];
-  const raw = {name: text('scan.raw'), title: text('scan.raw-about'), url: `/api/v1/scans/${id}/scan.zip`};
+  const raw = {name: text('scan.raw'), title: text('scan.raw-about'), url: `api/v1/scans/${id}/scan.zip`};
   return state !== 'running' && snapshots_done > 0 ? [...models, raw] : models;
 }
 

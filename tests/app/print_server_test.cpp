@@ -32,6 +32,30 @@ TEST(PrintServer, IsSentAModelAsItsInterfaceSays) {
   EXPECT_FALSE(has_header(put, "X-Api-Key: word"));
 }
 
+TEST(PrintServer, GetsNamesThatAreNoFolders) {
+  EXPECT_EQ(printer_file_name("Vase 1/2.stl"), "Vase 1-2.stl");
+  EXPECT_EQ(printer_file_name("Teil 3\\4.stl"), "Teil 3-4.stl");
+  EXPECT_EQ(printer_file_name("../oben.stl"), "-oben.stl");
+  EXPECT_EQ(printer_file_name("..."), "Scan");
+  EXPECT_EQ(printer_file_name("鸟笼.stl"), "鸟笼.stl");
+}
+
+TEST(PrintServer, SaysInItsOwnWordsWhyItRefuses) {
+  const Printer printer{.kind = PrinterKind::moonraker};
+  const auto told = [&](const std::string& body) {
+    return trouble_in(printer, {.status = 400, .body = body})->detail;
+  };
+  EXPECT_EQ(told(R"({"error": {"code": 400, "message": "Root gcodes not available"}})"),
+            "Moonraker answered 400: Root gcodes not available");
+  EXPECT_EQ(told(R"({"error": "Can not upload file, invalid file name"})"),
+            "Moonraker answered 400: Can not upload file, invalid file name");
+  EXPECT_EQ(told("no such root\nTraceback"), "Moonraker answered 400: no such root");
+  for (const char* silent : {"", "<html>", "{}", "[1]", R"({"error": null})", "\x80\xff"}) {
+    EXPECT_EQ(told(silent), "Moonraker answered 400: it refuses the file") << silent;
+  }
+  EXPECT_NE(trouble_in(printer, {.status = 413})->hint.find("nginx"), std::string::npos);
+}
+
 TEST(PrintServer, KeepsFilesWhereItCanWrite) {
   EXPECT_EQ(usable_storage(R"({"storage_list": [
                 {"path": "/sd", "available": true, "read_only": true},

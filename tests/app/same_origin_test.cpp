@@ -66,6 +66,14 @@ TEST(SameOrigin, RefusesOtherPages) {
   }
 }
 
+TEST(SameOrigin, SaysWhatAProxyHasChanged) {
+  const auto refused = refusal(
+      post({{"Content-Type", "application/json"}, {"Origin", "https://scanner.example"}}), ours);
+  EXPECT_EQ(refused->detail,
+            "the request comes from https://scanner.example, and is for octurn.local:8080");
+  EXPECT_NE(refused->hint.find("Host"), std::string::npos);
+}
+
 TEST(SameOrigin, RefusesWhatAFormCanSend) {
   for (const char* const type : {"text/plain", "application/x-www-form-urlencoded",
                                  "multipart/form-data", "", "application/jsonp"}) {

@@ -1,10 +1,12 @@
 // The scanner's event stream, for the page and for other programs.
 
 import assert from 'node:assert/strict';
+import {once} from 'node:events';
+import {createServer, request as forward} from 'node:http';
 import {test} from 'node:test';
 
 import {emptyPage, openBrowser, openPage} from './browser.js';
-import {ask, startScanner} from './scanner.js';
+import {ask, quick, startScanner} from './scanner.js';
 
 const maxWatchers = 8;
 
@@ -19,6 +21,7 @@ async function watch(scanner, wanted, lastEventId) {
       {signal: abort.signal, headers: lastEventId ? {'Last-Event-ID': lastEventId} : {}});
   assert.equal(response.status, 200);
   assert.equal(response.headers.get('Content-Type'), 'text/event-stream');
+  assert.equal(response.headers.get('X-Accel-Buffering'), 'no');
   const events = [];
   let text = '';
   for await (const part of response.body.pipeThrough(new TextDecoderStream())) {
@@ -93,4 +96,51 @@ test('more watchers than there may be are told to ask, and the page opens for th
   const {page} = await openPage(await openBrowser(t), scanner.url);
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.getByRole('progressbar', {name: 'Scan'}).waitFor();
+});
+
+/** Serves a scanner in the folder /scanner/ of another address, as docs/security.md has it. @returns {Promise<string>} the page's address */
+async function behindProxy(t, scanner) {
+  const proxy = createServer((asked, answer) => {
+    if (!asked.url.startsWith('/scanner/')) {
+      answer.writeHead(404).end();
+      return;
+    }
+    const {hostname, port} = new URL(scanner.url);
+    const to = forward({hostname, port, method: asked.method, path: asked.url.slice('/scanner'.length), headers: asked.headers});
+    to.on('response', (from) => {
+      answer.writeHead(from.statusCode, from.headers);
+      from.pipe(answer);
+    });
+    to.on('error', () => answer.destroy());
+    answer.on('close', () => to.destroy());
+    asked.pipe(to);
+  });
+  t.after(() => {
+    proxy.closeAllConnections();
+    proxy.close();
+  });
+  await once(proxy.listen(0, '127.0.0.1'), 'listening');
+  return `http://127.0.0.1:${proxy.address().port}/scanner/`;
+}
+
+test('behind a proxy that serves it in a folder the page scans, shows the model and gives it away', async (t) => {
+  const scanner = await startScanner(t, quick);
+  const url = await behindProxy(t, scanner);
+  const {page, faults} = await openPage(await openBrowser(t), url);
+  const heard = page.waitForRequest('**/scanner/api/v1/events');
+  await page.reload();
+  await heard;
+  const {id} = await ask(scanner, 'scans', 'POST', {snapshots: 4, frames: 2, leaf_size_mm: 4});
+  const drawn = page.waitForResponse('**/scanner/api/v1/scans/**/*.stl');
+  await page.goto(`${url}#${id}`);
+  assert.equal((await drawn).status(), 200);
+  const download = page.getByRole('link', {name: 'Download STL'}).first();
+  const [arrived] = await Promise.all([page.waitForEvent('download'), download.click()]);
+  assert.equal(arrived.suggestedFilename(), 'Scan.stl');
+  await page.getByRole('button', {name: 'Rename this scan'}).click();
+  await page.getByLabel('Name', {exact: true}).fill('Behind a proxy');
+  await page.keyboard.press('Enter');
+  await page.getByText('Behind a proxy').first().waitFor();
+  assert.equal((await ask(scanner, `scans/${id}`)).name, 'Behind a proxy');
+  assert.deepEqual(faults, []);
 });

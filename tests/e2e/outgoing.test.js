@@ -120,6 +120,11 @@ test('a model goes to each kind of printer, whole, and nothing is printed', asyn
   assert.equal(sent.form.get('print'), 'false');
   assert.ok(sent.bytes.equals(model));
 
+  const plainNames = await serve(t, (request, body) => ({status: body.includes('filename="Scan-') ? 201 : 400}));
+  await ask(scanner, 'printers', 'POST', {name: 'Old', kind: 'octoprint', url: plainNames.url, key});
+  const renamed = await send(scanner, id, {printer: 'Old'});
+  assert.deepEqual([renamed.state, renamed.file], ['sent', `Scan-${id}.stl`], renamed.detail);
+
   const moon = await serve(t, moonraker);
   const voron = await ask(scanner, 'printers', 'POST', {name: 'Voron', kind: 'moonraker', url: moon.url});
   assert.equal((await send(scanner, id, {printer: voron.id, format: '3mf'})).state, 'sent');

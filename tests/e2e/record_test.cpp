@@ -86,6 +86,15 @@ TEST(RecordCommand, RefusesAFolderThatIsThere) {
   EXPECT_NE(record.errors().find("is there already"), std::string::npos) << record.errors();
 }
 
+TEST(RecordCommand, TakesAsManySnapshotsAsAScan) {
+  const TemporaryFolder folder;
+  Program most(command("record", folder.path(), {"--snapshots", "400"}));
+  EXPECT_EQ(most.wait(), 1) << "the folder is there already";
+  Program more(command("record", folder.path(), {"--snapshots", "401"}));
+  EXPECT_EQ(more.wait(), 2);
+  EXPECT_NE(more.errors().find("1 to 400"), std::string::npos) << more.errors();
+}
+
 TEST(RecordCommand, SaysHowItIsUsed) {
   Program help({octurn_program(), "record", "--help"});
   EXPECT_EQ(help.wait(), 0);

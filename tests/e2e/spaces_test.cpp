@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -66,6 +67,81 @@ TEST_F(Spaces, ARecordingInTumsLayoutIsImportedAndBuilt) {
     EXPECT_EQ(told.contains("shell_thickness_mm"), method == std::string("solid"));
     EXPECT_TRUE(told["settings"]["clip_mm"].is_null()) << "it has no clip box: " << line;
   }
+}
+
+/// How a recording's poses may be written.
+struct Written {
+  double depth_unit = 0.0002;  // metres
+  bool is_inverted = false;
+  bool is_mirrored = false;
+  bool is_back_to_front = false;
+  std::vector<const char*> told = {};  // by the import
+};
+
+/// Writes twelve views of a room as a recording.
+void write_recording(const fs::path& folder, const Written& written) {
+  Room room = small_room();
+  room.lens.depth_unit = written.depth_unit;
+  std::ostringstream images;
+  std::ostringstream poses;
+  for (int i = 0; i < 12; ++i) {
+    const std::string file = std::to_string(i) + ".png";
+    write_depth_png(folder / "depth" / file, room_snapshot(room, i).frame);
+    const Eigen::Vector4d mirror(1, written.is_mirrored ? -1 : 1, 1, 1);
+    Eigen::Matrix4d pose = mirror.asDiagonal() * room_pose(room, i).matrix() * mirror.asDiagonal();
+    pose.middleCols<2>(1) *= written.is_back_to_front ? -1 : 1;
+    pose = written.is_inverted ? Eigen::Matrix4d(pose.inverse()) : pose;
+    const Eigen::Quaterniond turn(Eigen::Matrix3d(pose.topLeftCorner<3, 3>()));
+    images << i << " depth/" << file << '\n';
+    poses << i << ' ' << pose.topRightCorner<3, 1>().transpose() << ' ' << turn.coeffs().transpose()
+          << '\n';
+  }
+  put(folder / "depth.txt", images.str());
+  put(folder / "groundtruth.txt", poses.str());
+}
+
+TEST_F(Spaces, ARecordingTellsItsDepthUnitAndWhatItsPosesMean) {
+  const std::vector<Written> conventions{
+      {.told = {}},
+      {.depth_unit = 0.001, .told = {"unit is 1 mm", "as written"}},
+      {.is_inverted = true, .told = {"are inverted"}},
+      {.is_back_to_front = true, .told = {"are turned"}},
+      {.is_mirrored = true, .told = {"were mirrored"}},
+      {.depth_unit = 0.001,
+       .is_inverted = true,
+       .is_mirrored = true,
+       .told = {"unit is 1 mm", "are inverted", "were mirrored"}}};
+  for (std::size_t n = 0; n < conventions.size(); ++n) {
+    const std::string name = std::to_string(n);
+    write_recording(in("recording" + name), conventions[n]);
+    Program import({octurn_program(), "import", "tum", in("recording" + name), "-o", in(name),
+                    "--intrinsics", "120,120,80,60"});
+    ASSERT_EQ(import.wait(), 0) << import.errors();
+    for (const char* told : conventions[n].told) {
+      EXPECT_NE(import.errors().find(told), std::string::npos) << n << ": " << import.errors();
+    }
+    EXPECT_EQ(import.errors().find("as written") == std::string::npos, n == 0) << import.errors();
+    const Scan scan = read_scan(in(name));
+    EXPECT_EQ(scan.intrinsics.depth_unit, conventions[n].depth_unit) << n;
+    for (int i = 0; i < 12; ++i) {
+      EXPECT_TRUE(scan.shots[static_cast<std::size_t>(i)].object_from_sensor->isApprox(
+          room_pose(small_room(), i), 1e-4))
+          << n;
+    }
+  }
+  const json told = json::parse(run({"reconstruct", in("0"), "--leaf-size-mm", "16",
+                                     "--threshold-m2", "0.01", "-o", in("room.stl"), "--json"}));
+  EXPECT_GT(told["views"]["agreeing"], 20 * told["views"]["contradicted"].get<int>()) << told;
+  EXPECT_LT(told["views"]["disagreement_mm"], 5) << told;
+}
+
+TEST_F(Spaces, ADepthUnitThatIsGivenIsTakenAndDoubted) {
+  write_recording(in("recording"), {.depth_unit = 0.001});
+  Program import({octurn_program(), "import", "tum", in("recording"), "-o", in("scan"),
+                  "--intrinsics", "120,120,80,60", "--depth-unit-m", "0.0001"});
+  ASSERT_EQ(import.wait(), 0) << import.errors();
+  EXPECT_NE(import.errors().find("look at the depth unit"), std::string::npos) << import.errors();
+  EXPECT_EQ(read_scan(in("scan")).intrinsics.depth_unit, 0.0001);
 }
 
 TEST_F(Spaces, AnImportThatFailsLeavesNothing) {

@@ -23,26 +23,31 @@ test('a scan is started with its settings as JSON', async (t) => {
   assert.deepEqual(await api.start({snapshots: 8}), {id: 'one'});
   const [{path, method, headers, body}] = requests;
   assert.deepEqual({path, method, headers, body},
-      {path: '/api/v1/scans', method: 'POST', headers: {'Content-Type': 'application/json'}, body: '{"snapshots":8}'});
+      {path: 'api/v1/scans', method: 'POST', headers: {'Content-Type': 'application/json'}, body: '{"snapshots":8}'});
 });
 
 test('every unsafe request says that it is JSON, and names its scan', async (t) => {
   const requests = answering(t, new Response(null, {status: 204}));
   await api.remove('../a b');
-  assert.equal(requests[0].path, '/api/v1/scans/..%2Fa%20b');
+  assert.equal(requests[0].path, 'api/v1/scans/..%2Fa%20b');
   assert.equal(requests[0].headers['Content-Type'], 'application/json');
+});
+
+test('the addresses of an answer are ones from where the page is, and other texts stay', async (t) => {
+  answering(t, json({scans: [{name: '/api/v1/a', model: {url: '/api/v1/scans/one/Scan.stl'}}, {url: 'http://printer'}, {url: null}]}));
+  assert.deepEqual(await api.scans(), [{name: '/api/v1/a', model: {url: 'api/v1/scans/one/Scan.stl'}}, {url: 'http://printer'}, {url: null}]);
 });
 
 test('a cancel has an empty body', async (t) => {
   const requests = answering(t, json({id: 'one'}, 202));
   await api.cancel('one');
-  assert.equal(`${requests[0].method} ${requests[0].path} ${requests[0].body}`, 'POST /api/v1/scans/one/cancel {}');
+  assert.equal(`${requests[0].method} ${requests[0].path} ${requests[0].body}`, 'POST api/v1/scans/one/cancel {}');
 });
 
 test('a scan is resumed by its name', async (t) => {
   const requests = answering(t, json({id: 'one'}, 202));
   assert.deepEqual(await api.resume('one'), {id: 'one'});
-  assert.equal(`${requests[0].method} ${requests[0].path}`, 'POST /api/v1/scans/one/resume');
+  assert.equal(`${requests[0].method} ${requests[0].path}`, 'POST api/v1/scans/one/resume');
 });
 
 test('a problem arrives in the words of the scanner', async (t) => {

@@ -72,11 +72,11 @@ test('another model is shown with its own facts and verdict, and can be download
   const {details, stage} = screenOf(state);
   assert.equal(details.verdict.tone, 'good');
   assert.equal(details.download.url, 'builds/1');
-  assert.equal(stage.model.url, '/api/v1/scans/done/builds/1/Scan.stl');
+  assert.equal(stage.model.url, 'api/v1/scans/done/builds/1/Scan.stl');
   assert.equal(factsOf(state).Triangles, '5');
   assert.equal(factsOf(state).Detail, '2 mm, solid');
   assert.match(factsOf(state).Pose, /^Corrected by this scan/);
-  assert.equal(screenOf(withList([own, straight])).stage.model.url, '/api/v1/scans/done/builds/0/Scan.stl');
+  assert.equal(screenOf(withList([own, straight])).stage.model.url, 'api/v1/scans/done/builds/0/Scan.stl');
 });
 
 test('a build tells how far it is, and why it failed', () => {

@@ -1,5 +1,6 @@
 // Requests to the scanner. API.md describes the responses.
 
+import {parse, root} from '../base/address.js';
 import {text} from '../base/texts.js';
 import {refusalText} from '../base/wording.js';
 
@@ -115,7 +116,6 @@ import {refusalText} from '../base/wording.js';
  * @property {Network[]} networks  strongest first
  */
 
-const root = '/api/v1/';
 const patience = 8000;  // request timeout, milliseconds
 const patienceWithFile = 600000;  // timeout while a file is sent
 const patienceWithDoctor = 60000;  // timeout of a check, which waits for the sensor and watches it
@@ -152,7 +152,7 @@ async function problemOf(response) {
 }
 
 /**
- * @param {string} path  below the API's root, or absolute
+ * @param {string} path  below the API's root, or an address of an answer
  * @param {RequestInit} [options]
  * @param {number} [timeout]  milliseconds
  * @returns {Promise<Response>} with a status of success
@@ -161,7 +161,7 @@ async function problemOf(response) {
 async function request(path, options = {}, timeout = patience) {
   let response;
   try {
-    response = await fetch(path.startsWith('/') ? path : root + path,
+    response = await fetch(path.startsWith(root) ? path : root + path,
         {signal: AbortSignal.timeout(timeout), cache: 'no-cache', ...options});
   } catch (error) {
     throw options.signal?.aborted ? error : unreachable();
@@ -179,9 +179,11 @@ async function request(path, options = {}, timeout = patience) {
  */
 export async function json(path, options, timeout) {
   const response = await request(path, options, timeout);
-  return response.json().catch(() => {
+  try {
+    return parse(await response.text());
+  } catch {
     throw unreachable();  // truncated, or not from the scanner
-  });
+  }
 }
 
 /**

@@ -1,8 +1,10 @@
 // The scanner's event stream, which spares the page polling. Without the stream the page polls.
 
+import {parse, root} from './address.js';
+
 /** @typedef {import('../api/api.js').Status} Status */
 
-const address = '/api/v1/events';
+const address = `${root}events`;
 const maxSilence = 5000;  // milliseconds; there is a heartbeat every 3 s
 const retryPause = 30000;  // milliseconds, the Retry-After of a scanner with too many streams
 const longestDelay = 1000;  // milliseconds in which an older status may still arrive after a response
@@ -74,7 +76,7 @@ export function listenForNews(onNews) {
     close();
     source = new EventSource(address);
     source.addEventListener('status', ({data}) => {
-      heard.hear(JSON.parse(data), performance.now());
+      heard.hear(parse(data), performance.now());
       onNews();
     });
     source.addEventListener('heartbeat', () => heard.hearBeat(performance.now()));

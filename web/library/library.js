@@ -52,4 +52,4 @@ export const withToggled = (library, id) => {
 };
 
 /** The URL of a model's thumbnail, different for each build. @param {Scan} scan */
-export const pictureOf = ({id, model, build}) => model ? `/api/v1/scans/${id}/thumbnail.png?build=${build ?? 0}` : '';
+export const pictureOf = ({id, model, build}) => model ? `api/v1/scans/${id}/thumbnail.png?build=${build ?? 0}` : '';

@@ -61,7 +61,7 @@ export function asShown(state, scan) {
 }
 
 /** The URL of the model in the picture, different for each build. @param {Scan} scan @param {Build | null} build */
-export const pictureUrl = (scan, build) => `/api/v1/scans/${scan.id}/builds/${build?.build ?? scan.build ?? 0}/Scan.stl`;
+export const pictureUrl = (scan, build) => `api/v1/scans/${scan.id}/builds/${build?.build ?? scan.build ?? 0}/Scan.stl`;
 
 /** Whether a model was made without a solved pose and has faults that one may cure. @param {Scan} scan  as shown */
 export const isCrooked = ({model, settings, calibration}) => (settings.calibrate === 'told' || !calibration) &&

@@ -31,6 +31,32 @@ namespace octurn {
 std::unique_ptr<Reconstructor> make_tiled_reconstructor(const ReconstructOptions& options,
                                                         const std::filesystem::path& spool = {});
 
+/// How far the depth images of a space agree about it. With wrong poses, or a wrong depth unit,
+/// few of them do.
+struct ViewAgreement {
+  std::size_t compared = 0;      ///< readings of one image that fall on readings of another
+  std::size_t agreeing = 0;      ///< of these, within 5 % of the other's depth
+  std::size_t contradicted = 0;  ///< of these, in space that the other saw to be free
+  double gap = 0;  ///< metres: median distance along the other's ray, of the agreeing ones
+
+  /// The share of agreeing readings among those that the other image does not hide; 1 if there are
+  /// none.
+  double share() const;
+
+  /// How much speaks for the poses: wrong ones may make many readings agree, and more contradict.
+  double net() const { return static_cast<double>(agreeing) - static_cast<double>(contradicted); }
+
+  /// Whether some agree, and at most two in five contradict: noise and a moving scene make some.
+  bool is_credible() const { return agreeing > 0 && share() >= 0.6; }
+};
+
+/// Compares each depth image with each other one, on a grid of 40 pixels a row. Takes about 0.1 ms
+/// for a pair.
+ViewAgreement compare_views(std::span<const Snapshot> views);
+
+/// Reads at most 24 snapshots all over a scan, to compare them.
+std::vector<Snapshot> spread_views(const SnapshotSource& snapshots);
+
 /// The index of a tile: (0, 0, 0) is the root cube, (1, 0, 0) the cube beside it along X. Sorted by
 /// z, then y, then x.
 struct TileIndex {

@@ -7,6 +7,7 @@
 #include "commands/options.hpp"
 #include "octurn/error.hpp"
 #include "rig/usb_log.hpp"
+#include "settings/scan_settings.hpp"
 #include "signal_stop.hpp"
 #include "version.hpp"
 
@@ -93,7 +94,7 @@ void add_record(CLI::App& program, RecordArguments& arguments) {
       ->needs(usb);
   command.add_option("--snapshots", arguments.snapshots, "stops in a turn (36); 1 does not turn")
       ->type_name("N")
-      ->check(CLI::Range(1, 200))
+      ->check(CLI::Range(1, requested_ranges.max_snapshots))
       ->excludes(wall);
   command.add_option("--frames", arguments.frames, "frames at each stop (10), or of a wall (25)")
       ->type_name("N")

@@ -1,14 +1,21 @@
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <iostream>
 #include <span>
+#include <sstream>
 #include <string>
 #include <system_error>
+#include <utility>
+#include <vector>
 
 #include "commands/model_commands.hpp"
+#include "commands/model_report.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/png.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/tiles.hpp"
 #include "progress_bar.hpp"
 #include "sensor/new_folder.hpp"
 #include "signal_stop.hpp"
@@ -54,12 +61,19 @@ void take_size(const std::string& png, Intrinsics& intrinsics) {
 }
 
 /// Copies the recording's depth images into the folder as snapshots. @return their scan
-Scan gather(const TumRecording& recording, const ImportArguments& arguments, const fs::path& folder,
+Scan gather(TumRecording recording, const ImportArguments& arguments, const fs::path& folder,
             const std::stop_token& stop) {
   const std::string camera =
       arguments.camera.empty() ? std::string(to_tum_camera(arguments.folder)) : arguments.camera;
   Scan scan{
       .sensor_name = "TUM RGB-D, " + camera, .intrinsics = tum_camera(camera), .clip = everywhere};
+  if (scan.intrinsics.fy < 0) {
+    scan.intrinsics.fy = -scan.intrinsics.fy;
+    for (TumRecording::Image& image : recording.images) {
+      image.world_from_camera = with_y_down(image.world_from_camera);
+    }
+  }
+  scan.intrinsics.depth_unit = arguments.depth_unit.value_or(scan.intrinsics.depth_unit);
   fs::create_directories(folder / "snapshots");
   ProgressBar bar;
   for (const TumRecording::Image& image : recording.images) {
@@ -80,6 +94,93 @@ Scan gather(const TumRecording& recording, const ImportArguments& arguments, con
   return scan;
 }
 
+/// How a recording may be written: programs differ, and no file says.
+struct Convention {
+  double depth_unit = 0;          // metres
+  bool is_inverted = false;       // the poses are camera_from_world
+  bool is_back_to_front = false;  // the camera's Y points up and its Z back, as in OpenGL
+  bool is_mirrored = false;       // Y has the other sign, in the camera and in the world
+};
+
+Eigen::Isometry3d pose_by(const Convention& convention, Eigen::Isometry3d pose) {
+  if (convention.is_inverted) {
+    pose = pose.inverse();
+  }
+  if (convention.is_back_to_front) {
+    pose.matrix().middleCols<2>(1) *= -1;
+  }
+  return convention.is_mirrored ? with_y_down(pose) : pose;
+}
+
+ViewAgreement agreement_by(const Convention& convention, std::vector<Snapshot> views) {
+  for (Snapshot& view : views) {
+    view.intrinsics.depth_unit = convention.depth_unit;
+    view.object_from_sensor = pose_by(convention, view.object_from_sensor);
+  }
+  return compare_views(views);
+}
+
+/// The convention by which the depth images agree best: the layout's own, unless another one is
+/// far better.
+Convention find_convention(const std::vector<Snapshot>& views, const Convention& own,
+                           std::span<const double> units) {
+  constexpr double far_better = 1.5;
+  constexpr double believable = 0.8;
+  Convention best = own;
+  double most = far_better * std::max(0.0, agreement_by(own, views).net());
+  for (const double unit : units) {
+    for (unsigned bits = 0; bits < 8; ++bits) {
+      const Convention tried{.depth_unit = unit,
+                             .is_inverted = (bits & 1U) != 0,
+                             .is_back_to_front = (bits & 2U) != 0,
+                             .is_mirrored = (bits & 4U) != 0};
+      const ViewAgreement found = agreement_by(tried, views);
+      if (found.net() > most && found.share() > believable) {
+        best = tried;
+        most = found.net();
+      }
+    }
+  }
+  return best;
+}
+
+/// Finds the scan's convention from its own depth images, and rewrites its poses and depth unit.
+/// @return what was found, for people: nothing, or lines
+std::string settle_convention(const fs::path& folder, Scan& scan, bool has_unit) {
+  const std::vector<Snapshot> views = spread_views(stored_snapshots(folder, scan));
+  constexpr double millimetre = 0.001;
+  const Convention own{.depth_unit = scan.intrinsics.depth_unit};
+  const std::array units{own.depth_unit, has_unit ? own.depth_unit : millimetre};
+  const Convention found = find_convention(views, own, units);
+  scan.intrinsics.depth_unit = found.depth_unit;
+  for (Shot& shot : scan.shots) {
+    shot.object_from_sensor = pose_by(found, *shot.object_from_sensor);
+  }
+  std::ostringstream told;
+  if (found.depth_unit != own.depth_unit) {
+    told << "The depth unit is 1 mm, not 1/5000 m.\n";
+  }
+  if (found.is_inverted) {
+    told << "The poses were those of the world in the camera's frame: they are inverted.\n";
+  }
+  if (found.is_back_to_front) {
+    told << "The poses were of a camera whose Y points up and whose Z points back: they are "
+            "turned.\n";
+  }
+  if (found.is_mirrored) {
+    told << "The poses were mirrored: the sign of their Y is changed.\n";
+  }
+  if (told.tellp() > 0) {
+    const ViewAgreement agreement = agreement_by(found, views);
+    told << "Thus " << agreement.agreeing << " readings agree with another depth image, and "
+         << agreement.contradicted << " contradict one; as written, "
+         << agreement_by(own, views).agreeing << " agree.\n";
+  } else if (views.size() > 1) {
+    print_agreement(agreement_by(own, views));
+  }
+  return told.str();
+}
+
 }  // namespace
 
 void import_tum(const ImportArguments& arguments) try {
@@ -87,16 +188,19 @@ void import_tum(const ImportArguments& arguments) try {
   if (!arguments.camera.empty()) {
     static_cast<void>(tum_camera(arguments.camera));
   }
-  const TumRecording recording = read_tum_recording(arguments.folder, arguments.every);
+  TumRecording recording = read_tum_recording(arguments.folder, arguments.every, arguments.max_gap);
+  const std::size_t images = recording.images.size();
+  const std::size_t without_pose = recording.without_pose;
   NewFolder folder(arguments.output);
-  write_scan(folder.path(), gather(recording, arguments, folder.path(), signal.token()));
+  Scan scan = gather(std::move(recording), arguments, folder.path(), signal.token());
+  const std::string told = settle_convention(folder.path(), scan, arguments.depth_unit.has_value());
+  write_scan(folder.path(), scan);
   folder.commit();
-  std::cerr << recording.images.size() << " depth images imported";
-  if (recording.without_pose > 0) {
-    std::cerr << "; " << recording.without_pose
-              << " left out, as the recording has no pose near their time";
+  std::cerr << images << " depth images imported";
+  if (without_pose > 0) {
+    std::cerr << "; " << without_pose << " left out, as the recording has no pose near their time";
   }
-  std::cerr << ".\n";
+  std::cerr << ".\n" << told;
 } catch (const fs::filesystem_error& error) {
   const bool is_full = error.code() == std::errc::no_space_on_device;
   throw Error(is_full ? ErrorCode::disk_full : ErrorCode::write_failed,

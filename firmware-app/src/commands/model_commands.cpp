@@ -103,13 +103,24 @@ void add_import(CLI::App& program, ImportArguments& arguments) {
       ->type_name("SCAN_DIR")
       ->required();
   command
-      .add_option("--intrinsics", arguments.camera,
-                  "the camera: freiburg1, freiburg2, freiburg3, default, or FX,FY,CX,CY in pixels "
-                  "(as the folder's name tells, else default)")
+      .add_option(
+          "--intrinsics", arguments.camera,
+          "the camera: freiburg1, freiburg2, freiburg3, icl-nuim, default, or FX,FY,CX,CY in "
+          "pixels; a negative FY if its Y points up (as the folder's name tells, else default)")
       ->type_name("CAMERA");
   command.add_option("--every", arguments.every, "take one of so many depth images (1)")
       ->type_name("N")
       ->check(CLI::Range(1, 1'000'000));
+  command
+      .add_option("--depth-unit-m", arguments.depth_unit,
+                  "unit of the depth images, such as 0.001 (0.0002, or what their agreement tells)")
+      ->type_name("METRES")
+      ->check(CLI::Range(1e-6, 1.0));
+  command
+      .add_option("--max-gap-s", arguments.max_gap,
+                  "longest time between two poses to interpolate between (0.1)")
+      ->type_name("SECONDS")
+      ->check(CLI::Range(0.0, 1e6));
   command.footer(
       "Poses are interpolated to the time of each depth image; an image without poses near its "
       "time is left out.");

@@ -46,9 +46,11 @@ void build_ordered(const std::filesystem::path& folder);
 
 struct ImportArguments {
   std::filesystem::path folder = {};
-  std::filesystem::path output = {};  ///< scan folder to write
-  std::string camera = {};            ///< name or "FX,FY,CX,CY"; empty: from the folder's name
-  int every = 1;                      ///< takes every n-th depth image
+  std::filesystem::path output = {};      ///< scan folder to write
+  std::string camera = {};                ///< name or "FX,FY,CX,CY"; empty: from the folder's name
+  int every = 1;                          ///< takes every n-th depth image
+  double max_gap = 0.1;                   ///< seconds, between two poses to interpolate between
+  std::optional<double> depth_unit = {};  ///< metres; nothing: 1/5000 m, or what the images tell
 };
 
 /// `octurn import tum`: makes a scan folder of a recording in the layout of TUM's RGB-D data sets.

@@ -17,6 +17,14 @@ void print_verdict(const Quality& quality) {
   std::cerr << text + ".\n";
 }
 
+void print_agreement(const ViewAgreement& agreement) {
+  if (!agreement.is_credible()) {
+    std::cerr << agreement.agreeing << " readings agree with another depth image, and "
+              << agreement.contradicted
+              << " contradict one: look at the depth unit, the intrinsics and the poses.\n";
+  }
+}
+
 void print_report(const std::filesystem::path& model, const std::string& json) {
   const std::string line = json + "\n";
   if (model == "-") {

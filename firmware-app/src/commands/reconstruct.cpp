@@ -67,9 +67,11 @@ Json to_json(ModelSettings settings) {
   return object;
 }
 
-/// @param quality  nothing for a scan with free poses, which is not judged
+/// @param quality    nothing for a scan with free poses, which is not judged
+/// @param agreement  of a scan with free poses
 Json to_json(const ModelReport& report, const std::optional<Quality>& quality,
-             const ModelSettings& settings, const Times& times) {
+             const std::optional<ViewAgreement>& agreement, const ModelSettings& settings,
+             const Times& times) {
   const auto mm = [](const Eigen::Vector3d& metres) {
     return Json::array(
         {mm_from_metres(metres.x()), mm_from_metres(metres.y()), mm_from_metres(metres.z())});
@@ -92,6 +94,11 @@ Json to_json(const ModelReport& report, const std::optional<Quality>& quality,
   }
   if (quality) {
     object["quality"] = to_json(*quality);
+  }
+  if (agreement) {
+    object["views"] = {{"agreeing", agreement->agreeing},
+                       {"contradicted", agreement->contradicted},
+                       {"disagreement_mm", mm_from_metres(agreement->gap)}};
   }
   object["peak_memory_bytes"] = peak_memory_bytes();
   object["seconds"] = {{"snapshots", to_seconds(times.snapshots)},
@@ -191,8 +198,13 @@ void reconstruct(const ReconstructArguments& arguments) try {
     quality = judge(scan_checks->figures(options.threads), *report, findings);
     print_verdict(*quality);
   }
+  std::optional<ViewAgreement> agreement;
+  if (report && is_tiled) {
+    agreement = compare_views(spread_views(stored_snapshots(arguments.folder, scan, stop)));
+    print_agreement(*agreement);
+  }
   if (arguments.json) {
-    print_report(arguments.output, to_json(*report, quality, settings, times).dump());
+    print_report(arguments.output, to_json(*report, quality, agreement, settings, times).dump());
   }
 } catch (const Stopped&) {
   throw_stopped("no model was written");

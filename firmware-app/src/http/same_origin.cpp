@@ -97,8 +97,11 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
   }
   if (const auto origin = request.header("Origin"); origin && !is_same_origin(*origin, host)) {
     return Failure{.code = ErrorCode::wrong_origin,
-                   .detail = "the request comes from " + std::string(*origin),
-                   .hint = "Use the scanner's own page."};
+                   .detail = "the request comes from " + std::string(*origin) + ", and is for " +
+                             std::string(host),
+                   .hint =
+                       "Use the scanner's own page. A proxy before it has to pass the header "
+                       "Host on as it is."};
   }
   if (request.method != "DELETE" && !has_type(request, body_type)) {
     return Failure{.code = ErrorCode::wrong_content_type,

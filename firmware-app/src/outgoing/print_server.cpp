@@ -1,6 +1,9 @@
 #include "outgoing/print_server.hpp"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
+
+#include "one_line.hpp"
 
 namespace octurn {
 namespace {
@@ -42,7 +45,47 @@ std::string slicing_hint(PrinterKind kind) {
   return hint;
 }
 
+/// The text of an error in JSON, as print servers write it; nothing if it has none.
+std::optional<std::string> json_reason(const std::string& body) try {
+  json answer = parse_json(body, ErrorCode::bad_json, "it");
+  for (const char* const key : {"error", "message", "detail", "title"}) {
+    if (answer.is_object() && answer.contains(key)) {
+      answer = json(answer[key]);
+    }
+  }
+  return answer.is_string() ? answer.get<std::string>() : std::string();
+} catch (const Error&) {
+  return std::nullopt;
+}
+
+/// The first line of the reason in an answer's body; empty if it has none, such as a page of HTML.
+std::string reason_in(const std::string& body) {
+  constexpr std::size_t longest = 200;
+  std::optional<std::string> reason = json_reason(body);
+  const auto is_ascii = [](char c) { return c >= ' ' && c <= '~'; };
+  if (!reason) {
+    reason = body.substr(0, body.find_first_of("\r\n"));
+    if (!std::ranges::all_of(*reason, is_ascii) || reason->find('<') != reason->npos) {
+      return "";
+    }
+  }
+  std::size_t length = std::min(longest, reason->size());
+  while (length > 0 && length < reason->size() && ((*reason)[length] & 0xC0) == 0x80) {
+    --length;  // not within a character of UTF-8
+  }
+  reason->resize(length);
+  return is_one_line(*reason) ? *reason : "";
+}
+
 }  // namespace
+
+std::string printer_file_name(std::string name) {
+  std::ranges::replace_if(
+      name, [](char c) { return c == '/' || c == '\\' || static_cast<unsigned char>(c) < ' '; },
+      '-');
+  const std::size_t start = name.find_first_not_of('.');
+  return start == std::string::npos ? "Scan" : name.substr(start);
+}
 
 OutgoingRequest upload_request(const Printer& printer, const std::filesystem::path& file,
                                const std::string& name, const std::string& storage) {
@@ -121,10 +164,18 @@ std::optional<PrinterTrouble> trouble_in(const Printer& printer, const OutgoingA
       return PrinterTrouble{answered + ": it cannot take the file now",
                             "It may be printing the file of that name. Try again later."};
     case 413:
+      return PrinterTrouble{answered + ": the file is too large for it",
+                            "Raise its limit, or that of a proxy before it (client_max_body_size "
+                            "in nginx), or send a model with a larger leaf size."};
     case 507:
       return PrinterTrouble{answered + ": it has no room for the file",
                             "Delete files there, or send a model with a larger leaf size."};
-    case 400:
+    case 400: {
+      const std::string reason = reason_in(answer.body);
+      return PrinterTrouble{
+          answered + (reason.empty() ? ": it refuses the file" : ": " + reason),
+          "Rename the scan if it is the name. Else look into the log of " + program + "."};
+    }
     case 415:
       return PrinterTrouble{answered + ": it does not take this kind of file",
                             slicing_hint(printer.kind)};

@@ -16,6 +16,9 @@ struct PrinterTrouble {
   std::string hint = {};
 };
 
+/// A file's name for a print server: without what it would take as a folder, or as hidden.
+std::string printer_file_name(std::string name);
+
 /// The request that uploads a file to a print server without printing it: OctoPrint's
 /// `POST /api/files/local`, Moonraker's `POST /server/files/upload`, PrusaLink's
 /// `PUT /api/v1/files/STORAGE/NAME`. An older file of that name is replaced.

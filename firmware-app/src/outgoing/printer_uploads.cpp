@@ -6,6 +6,11 @@
 #include "log.hpp"
 
 namespace octurn {
+namespace {
+
+constexpr int bad_request = 400;
+
+}  // namespace
 
 std::string_view to_string(PrinterUpload::State state) {
   switch (state) {
@@ -23,8 +28,9 @@ std::string_view to_string(PrinterUpload::State state) {
 
 std::optional<PrinterUpload> PrinterUploads::start(const std::string& scan, const Printer& printer,
                                                    const std::filesystem::path& file,
-                                                   const std::string& name) {
+                                                   const std::string& wanted_name) {
   const std::lock_guard starting(starting_);
+  const std::string name = printer_file_name(wanted_name);
   PrinterUpload begun{.scan = scan, .printer = printer.name, .file = name};
   {
     const std::lock_guard lock(mutex_);
@@ -79,7 +85,18 @@ std::optional<PrinterTrouble> PrinterUploads::upload(const Printer& printer,
     const std::lock_guard lock(mutex_);
     last_->progress = gone ? 0 : std::min(1.0, static_cast<double>(sent) / std::max(bytes, 1.0));
   };
-  return trouble_in(printer, ask(upload_request(printer, file, name, storage), stop, on_sent));
+  OutgoingAnswer answer = ask(upload_request(printer, file, name, storage), stop, on_sent);
+  const bool is_ascii = std::ranges::all_of(name, [](char c) { return c > 0; });
+  if (answer.status == bad_request && !is_ascii) {  // OctoPrint 1.11 takes no other names
+    std::string plain_name;
+    {
+      const std::lock_guard lock(mutex_);
+      plain_name = "Scan-" + last_->scan + std::filesystem::path(name).extension().string();
+      last_->file = plain_name;
+    }
+    answer = ask(upload_request(printer, file, plain_name, storage), stop, on_sent);
+  }
+  return trouble_in(printer, answer);
 }
 
 void PrinterUploads::send(const Printer& printer, const std::filesystem::path& file,

@@ -35,10 +35,12 @@ class PrinterUploads {
 
   /// Starts an upload.
   /// @param scan  id of the model's scan
-  /// @param name  of the file on the printer
+  /// @param wanted_name  of the file on the printer, which gets `printer_file_name` of it, or, if
+  ///                     it refuses letters that are not ASCII, a name by the scan's id
   /// @return nothing while another upload runs
   std::optional<PrinterUpload> start(const std::string& scan, const Printer& printer,
-                                     const std::filesystem::path& file, const std::string& name);
+                                     const std::filesystem::path& file,
+                                     const std::string& wanted_name);
 
   /// The last upload, if it is of that scan.
   std::optional<PrinterUpload> last(std::string_view scan) const;

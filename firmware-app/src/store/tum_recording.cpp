@@ -4,8 +4,10 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iomanip>
 #include <optional>
 #include <sstream>
+#include <system_error>
 #include <utility>
 
 #include "octurn/error.hpp"
@@ -17,13 +19,12 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t max_list_bytes = std::size_t{64} << 20U;
-constexpr double max_gap = 0.1;            // seconds between the poses around an image
 constexpr double same_time = 1e-6;         // seconds: times have six decimals
 constexpr double quaternion_slack = 0.01;  // of its length from one: files have four decimals
 
 struct TimedPose {
-  double time = 0;  // seconds
-  Eigen::Isometry3d world_from_camera = Eigen::Isometry3d::Identity();
+  double time = 0;                                          // seconds
+  std::optional<Eigen::Isometry3d> world_from_camera = {};  // nothing: the tracker was lost
 };
 
 std::optional<double> parse_number(std::string_view text) {
@@ -39,13 +40,16 @@ std::optional<double> parse_number(std::string_view text) {
 /// Splits the lines of a list into words, without comments. Errors name the line.
 class ListFile {
  public:
-  ListFile(const fs::path& folder, const char* name) : name_(name) {
-    auto text = read_regular_file(folder / name, max_list_bytes);
+  explicit ListFile(const fs::path& file) : name_(file.filename().string()) {
+    auto text = read_regular_file(file, max_list_bytes);
     if (!text) {
-      throw Error(ErrorCode::scan_missing, (folder / name).string() + ": there is no such file",
+      throw Error(ErrorCode::scan_missing, file.string() + ": there is no such file",
                   "Name the folder of a recording, with a depth.txt and a groundtruth.txt.");
     }
-    text_ = std::istringstream(*std::move(text));
+    constexpr std::string_view byte_order_mark = "\xEF\xBB\xBF";
+    text_ =
+        std::istringstream(text->starts_with(byte_order_mark) ? text->substr(byte_order_mark.size())
+                                                              : *std::move(text));
   }
 
   /// Returns the words of the next line that is neither a comment nor empty; nullopt at the end.
@@ -77,11 +81,14 @@ class ListFile {
     return *number;
   }
 
-  void expect_later(double time, std::optional<double>& last) const {
-    if (last && time < *last) {
-      refuse("its time is before that of the line above");
+  /// A time in seconds; its size tells its unit.
+  double time(const std::string& word) const {
+    constexpr double far_future = 1e11;  // in seconds since 1970; less than today in milliseconds
+    double time = number(word);
+    for (int i = 0; i < 3 && time > far_future; ++i) {
+      time /= 1000;
     }
-    last = time;
+    return time;
   }
 
  private:
@@ -90,94 +97,163 @@ class ListFile {
   int line_ = 0;
 };
 
+/// Returns the list of poses: groundtruth.txt, or the only *.gt.freiburg.
+fs::path poses_file(const fs::path& folder) {
+  fs::path found = folder / "groundtruth.txt";
+  std::error_code error;
+  if (!fs::exists(found, error)) {
+    for (const auto& entry : fs::directory_iterator(folder, error)) {
+      if (entry.path().filename().string().ends_with(".gt.freiburg")) {
+        found = entry.path();
+      }
+    }
+  }
+  return found;
+}
+
+std::optional<Eigen::Isometry3d> parse_pose(const ListFile& list,
+                                            const std::vector<std::string>& words) {
+  std::array<double, 7> n{};
+  for (std::size_t i = 0; i < n.size(); ++i) {
+    const std::string& word = words[i + 1];
+    if (word.find("nan") != word.npos || word.find("NaN") != word.npos) {
+      return std::nullopt;
+    }
+    n[i] = list.number(word);
+  }
+  const Eigen::Quaterniond turn(n[6], n[3], n[4], n[5]);
+  if (turn.norm() == 0) {
+    return std::nullopt;
+  }
+  if (std::abs(turn.norm() - 1) > quaternion_slack) {
+    list.refuse("its quaternion must be of length one");
+  }
+  return Eigen::Isometry3d(Eigen::Translation3d(n[0], n[1], n[2]) * turn.normalized());
+}
+
 std::vector<TimedPose> read_poses(const fs::path& folder) {
-  ListFile list(folder, "groundtruth.txt");
+  ListFile list(poses_file(folder));
   std::vector<TimedPose> poses;
-  std::optional<double> last;
   while (const auto words = list.next()) {
-    constexpr std::size_t columns = 8;
-    if (words->size() != columns) {
+    constexpr std::size_t columns = 8;  // some programs add others
+    if (words->size() < columns) {
       list.refuse("must be a time, three numbers of a position and four of a quaternion");
     }
-    std::array<double, columns> n{};
-    for (std::size_t i = 0; i < columns; ++i) {
-      n[i] = list.number((*words)[i]);
-    }
-    list.expect_later(n[0], last);
-    const Eigen::Quaterniond turn(n[7], n[4], n[5], n[6]);
-    if (std::abs(turn.norm() - 1) > quaternion_slack) {
-      list.refuse("its quaternion must be of length one");
-    }
     poses.push_back(
-        {.time = n[0],
-         .world_from_camera = Eigen::Translation3d(n[1], n[2], n[3]) * turn.normalized()});
+        {.time = list.time(words->front()), .world_from_camera = parse_pose(list, *words)});
   }
+  std::ranges::stable_sort(poses, {}, &TimedPose::time);
   return poses;
 }
 
-/// Returns the pose at a time, or interpolated between the poses around it; nullopt if these are
-/// too far apart.
-std::optional<Eigen::Isometry3d> pose_at(const std::vector<TimedPose>& poses, double time) {
+struct FoundPose {
+  std::optional<Eigen::Isometry3d> world_from_camera = {};
+  double gap = 0;  // seconds between the poses around the time, if they are too far apart
+};
+
+/// Returns the pose at a time, or interpolated between the poses around it.
+FoundPose pose_at(const std::vector<TimedPose>& poses, double time, double max_gap) {
   const auto after = std::ranges::lower_bound(poses, time - same_time, {}, &TimedPose::time);
   if (after == poses.end()) {
-    return std::nullopt;
+    return {};
   }
   if (after->time <= time + same_time) {
-    return after->world_from_camera;
+    return {.world_from_camera = after->world_from_camera};
   }
   if (after == poses.begin()) {
-    return std::nullopt;
+    return {};
   }
   const TimedPose& before = *std::prev(after);
-  if (after->time - before.time > max_gap) {
-    return std::nullopt;
+  const double gap = after->time - before.time;
+  if (gap > max_gap) {
+    return {.gap = gap};
   }
-  const double part = (time - before.time) / (after->time - before.time);
-  const Eigen::Isometry3d& a = before.world_from_camera;
-  const Eigen::Isometry3d& b = after->world_from_camera;
+  if (!before.world_from_camera || !after->world_from_camera) {
+    return {};
+  }
+  const double part = (time - before.time) / gap;
+  const Eigen::Isometry3d& a = *before.world_from_camera;
+  const Eigen::Isometry3d& b = *after->world_from_camera;
   const Eigen::Vector3d position = a.translation() + part * (b.translation() - a.translation());
   const Eigen::Quaterniond turn =
       Eigen::Quaterniond(a.linear()).slerp(part, Eigen::Quaterniond(b.linear()));
-  return Eigen::Isometry3d(Eigen::Translation3d(position) * turn.normalized());
+  return {.world_from_camera =
+              Eigen::Isometry3d(Eigen::Translation3d(position) * turn.normalized())};
+}
+
+/// A range of times for people, such as "12.5 to 14 s".
+std::string range_text(double first, double last) {
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(3) << first << " to " << last << " s";
+  return text.str();
 }
 
 bool is_inside(const fs::path& file) {
   return file.is_relative() && std::ranges::find(file, fs::path("..")) == file.end();
 }
 
-}  // namespace
+/// An entry of the list of depth images, which may also list colour images.
+struct ListedImage {
+  double time = 0;  // seconds
+  std::string file = {};
+};
 
-TumRecording read_tum_recording(const fs::path& folder, int every) {
-  const std::vector<TimedPose> poses = read_poses(folder);
-  ListFile list(folder, "depth.txt");
-  TumRecording recording;
-  std::optional<double> last;
-  for (int number = 0; const auto words = list.next(); ++number) {
-    if (words->size() != 2) {
+std::vector<ListedImage> read_images(const fs::path& folder) {
+  std::error_code error;
+  const bool has_depth_list =
+      fs::exists(folder / "depth.txt", error) || !fs::exists(folder / "associations.txt", error);
+  ListFile list(folder / (has_depth_list ? "depth.txt" : "associations.txt"));
+  std::vector<ListedImage> images;
+  while (auto words = list.next()) {
+    const bool is_second = words->size() == 4 && !(*words)[1].starts_with("depth");
+    if (words->size() != 2 && (has_depth_list || words->size() != 4)) {
       list.refuse("must be a time and the name of a depth image");
     }
-    const double time = list.number(words->front());
-    list.expect_later(time, last);
-    if (!is_inside(words->back())) {
-      list.refuse("\"" + words->back() + "\" must be a file in the recording's folder");
+    std::string& file = (*words)[is_second ? 3 : 1];
+    std::ranges::replace(file, '\\', '/');
+    if (!is_inside(file)) {
+      list.refuse("\"" + file + "\" must be a file in the recording's folder");
     }
-    if (number % every != 0) {
-      continue;
-    }
-    if (const auto pose = pose_at(poses, time)) {
-      recording.images.push_back({.time = time, .file = words->back(), .world_from_camera = *pose});
+    images.push_back({.time = list.time((*words)[is_second ? 2 : 0]), .file = std::move(file)});
+  }
+  return images;
+}
+
+}  // namespace
+
+TumRecording read_tum_recording(const fs::path& folder, int every, double max_gap) {
+  const std::vector<ListedImage> listed = read_images(folder);
+  const std::vector<TimedPose> poses = read_poses(folder);
+  TumRecording recording;
+  double gap = 0;
+  for (std::size_t i = 0; i < listed.size(); i += static_cast<std::size_t>(every)) {
+    const FoundPose found = pose_at(poses, listed[i].time, max_gap);
+    if (found.world_from_camera) {
+      recording.images.push_back({.time = listed[i].time,
+                                  .file = listed[i].file,
+                                  .world_from_camera = *found.world_from_camera});
     } else {
       ++recording.without_pose;
+      gap = std::max(gap, found.gap);
     }
   }
-  if (recording.images.empty()) {
-    throw Error(ErrorCode::scan_empty,
-                folder.string() + ": no depth image has a pose: of " +
-                    std::to_string(recording.without_pose) + " none is within the times of " +
-                    std::to_string(poses.size()) + " poses",
-                "Look whether depth.txt and groundtruth.txt are of one recording.");
+  if (!recording.images.empty()) {
+    return recording;
   }
-  return recording;
+  std::string detail = folder.string() + ": none of " + std::to_string(recording.without_pose) +
+                       " depth images has a pose";
+  std::string hint = "Look whether both lists are of one recording.";
+  if (gap > 0) {
+    std::ostringstream seconds;
+    seconds << gap;
+    detail += ": the poses around them are up to " + seconds.str() + " s apart";
+    hint = "Raise --max-gap-s, if the camera moved evenly in between.";
+  } else if (!listed.empty() && !poses.empty()) {
+    const auto [first, last] = std::ranges::minmax(listed, {}, &ListedImage::time);
+    detail += ": they were taken at " + range_text(first.time, last.time) + ", the poses are of " +
+              range_text(poses.front().time, poses.back().time);
+  }
+  throw Error(ErrorCode::scan_empty, detail, hint);
 }
 
 Intrinsics tum_camera(std::string_view camera) {
@@ -185,7 +261,8 @@ Intrinsics tum_camera(std::string_view camera) {
     std::string_view name;
     std::array<double, 4> values;
   };
-  constexpr std::array cameras{Named{"freiburg1", {517.3, 516.5, 318.6, 255.3}},
+  constexpr std::array cameras{Named{"icl-nuim", {481.2, -480.0, 319.5, 239.5}},
+                               Named{"freiburg1", {517.3, 516.5, 318.6, 255.3}},
                                Named{"freiburg2", {520.9, 521.0, 325.1, 249.7}},
                                Named{"freiburg3", {535.4, 539.2, 320.1, 247.6}},
                                Named{"default", {525.0, 525.0, 319.5, 239.5}}};
@@ -206,15 +283,23 @@ Intrinsics tum_camera(std::string_view camera) {
       }
       values[count] = *number;
     }
-    if (count != values.size() || values[0] <= 0 || values[1] <= 0) {
-      throw Error(ErrorCode::bad_settings,
-                  "intrinsics: \"" + std::string(camera) +
-                      "\" must be freiburg1, freiburg2, freiburg3, default, or four numbers: "
-                      "FX,FY,CX,CY");
+    if (count != values.size() || values[0] <= 0 || values[1] == 0) {
+      throw Error(
+          ErrorCode::bad_settings,
+          "intrinsics: \"" + std::string(camera) +
+              "\" must be freiburg1, freiburg2, freiburg3, icl-nuim, default, or four numbers: "
+              "FX,FY,CX,CY");
     }
   }
   return {
       .fx = values[0], .fy = values[1], .cx = values[2], .cy = values[3], .depth_unit = 1.0 / 5000};
+}
+
+Eigen::Isometry3d with_y_down(const Eigen::Isometry3d& world_from_camera) {
+  const Eigen::Vector4d mirror(1, -1, 1, 1);
+  Eigen::Isometry3d mirrored;
+  mirrored.matrix() = mirror.asDiagonal() * world_from_camera.matrix() * mirror.asDiagonal();
+  return mirrored;
 }
 
 std::string_view to_tum_camera(const fs::path& folder) {
@@ -223,6 +308,9 @@ std::string_view to_tum_camera(const fs::path& folder) {
     if (name.find(camera) != std::string::npos) {
       return camera;
     }
+  }
+  if (poses_file(folder).extension() == ".freiburg") {
+    return "icl-nuim";
   }
   return "default";
 }

@@ -43,7 +43,9 @@ Response send_events(EventFeed& feed, const Request& request) {
     refused.headers.emplace_back("Retry-After", retry_after);
     return refused;
   }
-  return {.headers = {{"Content-Type", "text/event-stream"}, {"Cache-Control", "no-store"}},
+  return {.headers = {{"Content-Type", "text/event-stream"},
+                      {"Cache-Control", "no-store"},
+                      {"X-Accel-Buffering", "no"}},  // of nginx, which would keep events back
           .body = std::move(*stream)};
 }
 

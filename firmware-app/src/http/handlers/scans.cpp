@@ -70,8 +70,11 @@ Response label_scan(App& app, const Request& request, std::string_view id) {
   if (change.notes && !is_notes(*change.notes)) {
     throw Error(ErrorCode::bad_name, "\"notes\" must be text of at most 2000 characters");
   }
-  if (!change.notes || body.contains("name")) {
+  if (body.contains("name")) {
     change.name = name_in(keys);
+  }
+  if (!change.name && !change.notes) {
+    throw Error(ErrorCode::bad_name, "the body has neither \"name\" nor \"notes\"");
   }
   keys.refuse_unread();
   app.scanner.label(id, change);

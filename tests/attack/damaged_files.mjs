@@ -1,6 +1,8 @@
 // damaged_files ARCHIVES STARTS [SEED]: imports ARCHIVES damaged archives, up to the model, and starts the daemon STARTS times with damaged
-// files of its own. It must refuse or finish each import, find the same scans after a restart, and serve whatever its files are.
+// files of its own, or with a folder or a FIFO in the place of one. It must refuse or finish each import, find the same scans after a restart,
+// serve whatever its files are, and end when asked to.
 
+import {execFileSync} from 'node:child_process';
 import {mkdirSync, readdirSync, readFileSync, rmSync, writeFileSync} from 'node:fs';
 import {join} from 'node:path';
 
@@ -92,10 +94,16 @@ async function checkScans() {
 
 /** Starts the daemon with damaged files of its own, and changes its settings. */
 async function startDamaged(whole) {
-  await daemon.end();
+  const [status] = await daemon.end();
+  require(status === 0, `it ends with ${status}`);
   rmSync(join(folder, 'data'), {recursive: true});
   mkdirSync(join(folder, 'data'));
+  const blocked = random.chance(0.4) ? random.pick(Object.keys(whole)) : '';
   for (const [name, bytes] of Object.entries(whole)) {
+    if (name === blocked) {
+      execFileSync(random.pick(['mkdir', 'mkfifo']), [join(folder, 'data', name)]);
+      continue;
+    }
     const damaged = random.chance(0.5) ? damagedJson(random, bytes.toString()) : bytes;
     writeFileSync(join(folder, 'data', name), damaged, {mode: 0o600});
   }
@@ -105,7 +113,8 @@ async function startDamaged(whole) {
   await daemon.get('/api/v1/settings');
   require((await daemon.ask('GET', '/api/v1/diagnostics.zip')).status === 200, 'there are no diagnostics');
   const changed = await daemon.ask('PATCH', '/api/v1/settings', {scan: {frames: 3}});
-  require([200, 409].includes(changed.status), `PATCH settings: ${changed.status} ${changed.body}`);
+  const isTold = blocked && changed.status === 500 && changed.json.code !== 'internal';
+  require([200, 409].includes(changed.status) || isTold, `PATCH settings: ${changed.status} ${changed.body}`);
 }
 
 try {

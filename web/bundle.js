@@ -49,6 +49,16 @@ const bundleWorkers = {name: 'workers', setup: ({onLoad}) => {
       {contents: text.replace(workerUrl, (_, name) => `new URL('./${made.get(name)}', import.meta.url)`)};
   });
 }};
+const lightDark = /light-dark\(((?:[^(),]|\([^()]*\))+),(?:[^(),]|\([^()]*\))+\)/g;
+
+/** Gives the light colours to browsers without light-dark(), which came in 2024. */
+const fallBackToLight = {name: 'light', setup: ({onLoad}) => {
+  onLoad({filter: /\/style\.css$/}, async ({path}) => {
+    const text = await readFile(path, 'utf8');
+    const light = [...text.matchAll(/--[a-z-]+: [^;]*light-dark[^;]*;/g)].map(([colour]) => colour.replace(lightDark, '$1'));
+    return {contents: `${text}@supports not (color: light-dark(red, red)) { :root { color-scheme: light; ${light.join('')} } }`, loader: 'css'};
+  });
+}};
 const common = {
   bundle: true, minify: true, format: 'esm', target: 'es2022', charset: 'utf8', legalComments: 'none', logLevel: 'warning',
   metafile: true, absWorkingDir: source, outdir: join(target, 'assets'), entryNames: '[name]-[hash]', chunkNames: '[name]-[hash]',
@@ -74,7 +84,7 @@ const fromPage = (path) => relative(target, join(source, path));
 
 /** Bundles a document's stylesheets into one file, in their order. @param {string[]} files @returns {Promise<string>} */
 async function bundleStyles(files) {
-  const {metafile} = await build({...common, entryNames: `${basename(files.at(-1), '.css')}-[hash]`, external: ['icons/*'], stdin: {
+  const {metafile} = await build({...common, entryNames: `${basename(files.at(-1), '.css')}-[hash]`, external: ['icons/*'], plugins: [fallBackToLight], stdin: {
     contents: files.map((file) => `@import "./${file}";`).join('\n'), loader: 'css', resolveDir: source, sourcefile: 'document.css'}});
   return fromPage(Object.keys(metafile.outputs)[0]);
 }

@@ -185,6 +185,9 @@ async function chooseTheme(browser, scanner) {
   const {page, faults} = await openSettings(browser, scanner);
   const shown = () => page.evaluate(() => getComputedStyle(document.documentElement).backgroundColor);
   const light = await shown();
+  const fallbacks = await page.evaluate(() => [...document.styleSheets].flatMap((sheet) => [...sheet.cssRules])
+      .filter((rule) => rule instanceof CSSSupportsRule && rule.conditionText.includes('light-dark')).length);
+  assert.equal(fallbacks, 1, 'for browsers without light-dark()');
   await Promise.all([page.waitForEvent('load'), page.getByLabel('Theme', {exact: true}).selectOption('dark')]);
   await page.locator('#cards').waitFor();
   const dark = await shown();

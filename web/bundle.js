@@ -49,14 +49,16 @@ const bundleWorkers = {name: 'workers', setup: ({onLoad}) => {
       {contents: text.replace(workerUrl, (_, name) => `new URL('./${made.get(name)}', import.meta.url)`)};
   });
 }};
-const lightDark = /light-dark\(((?:[^(),]|\([^()]*\))+),(?:[^(),]|\([^()]*\))+\)/g;
+const lightDark = /light-dark\(((?:[^(),]|\([^()]*\))+),((?:[^(),]|\([^()]*\))+)\)/g;
 
-/** Gives the light colours to browsers without light-dark(), which came in 2024. */
-const fallBackToLight = {name: 'light', setup: ({onLoad}) => {
+/** Gives both schemes to browsers without light-dark(), which came in 2024. */
+const spellSchemes = {name: 'schemes', setup: ({onLoad}) => {
   onLoad({filter: /\/style\.css$/}, async ({path}) => {
     const text = await readFile(path, 'utf8');
-    const light = [...text.matchAll(/--[a-z-]+: [^;]*light-dark[^;]*;/g)].map(([colour]) => colour.replace(lightDark, '$1'));
-    return {contents: `${text}@supports not (color: light-dark(red, red)) { :root { color-scheme: light; ${light.join('')} } }`, loader: 'css'};
+    const colours = [...text.matchAll(/--[a-z-]+: [^;]*light-dark[^;]*;/g)].map(([colour]) => colour).join('');
+    const [light, dark] = ['$1', '$2'].map((one) => colours.replace(lightDark, one));
+    return {loader: 'css', contents: `${text}@supports not (color: light-dark(red, red)) { :root { ${light} }
+      @media (prefers-color-scheme: dark) { :root:not([data-theme=light]) { ${dark} } } :root[data-theme=dark] { ${dark} } }`};
   });
 }};
 const common = {
@@ -84,7 +86,7 @@ const fromPage = (path) => relative(target, join(source, path));
 
 /** Bundles a document's stylesheets into one file, in their order. @param {string[]} files @returns {Promise<string>} */
 async function bundleStyles(files) {
-  const {metafile} = await build({...common, entryNames: `${basename(files.at(-1), '.css')}-[hash]`, external: ['icons/*'], plugins: [fallBackToLight], stdin: {
+  const {metafile} = await build({...common, entryNames: `${basename(files.at(-1), '.css')}-[hash]`, external: ['icons/*'], plugins: [spellSchemes], stdin: {
     contents: files.map((file) => `@import "./${file}";`).join('\n'), loader: 'css', resolveDir: source, sourcefile: 'document.css'}});
   return fromPage(Object.keys(metafile.outputs)[0]);
 }

@@ -4,6 +4,7 @@ try {
   if (theme) {
     document.documentElement.dataset.theme = theme;
     for (const meta of document.querySelectorAll('meta[name=theme-color]')) {
+      meta.dataset.media = meta.media;
       meta.media = meta.media.includes(theme) ? '' : 'not all';
     }
   }

@@ -165,7 +165,7 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
   }
 }
 
-/// Reports filled-in surface that is far from everything that any stop saw: nothing measured says
+/// Reports filled-in surface that is far from everything that two stops saw: nothing measured says
 /// where it should be.
 void judge_fill(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
   std::vector<Eigen::Vector3d> far_places;
@@ -315,8 +315,11 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
 Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
               std::span<const CalibrationFinding> findings) {
   ScanFigures first = poses.front();
-  // Another pose may have seen what lies in a gap between the stops of one.
+  // Another pose may have seen what lies in a gap between the stops of one, or what is filled in.
   first.widest_gap = std::ranges::min(poses, {}, &ScanFigures::widest_gap).widest_gap;
+  for (const ScanFigures& other : poses.subspan(1)) {
+    first.seen.insert(first.seen.end(), other.seen.begin(), other.seen.end());
+  }
   Quality quality = judge(first, model, findings);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     add_reasons(quality, judge_side(poses[i], model), i + 1);

@@ -120,7 +120,11 @@ TEST(Diagnostics, TellsPosesAndOpticsWithoutSerialNumbers) {
   const TemporaryFolder folder;
   Config config;
   config.data = folder.path();
-  CalibrationStore(config.data).set({.origin = PoseOrigin::page, .at = "2026-11-21T08:15:00Z"});
+  CalibrationStore(config.data)
+      .set({.origin = PoseOrigin::scan,
+            .at = "2026-11-21T08:15:00Z",
+            .optics_of = "A00362611",
+            .optics_at = "2026-11-22T08:15:00Z"});
   keep_optics(config.data, "A00362611", {.at = "2026-11-22T08:15:00Z"});
   put(folder.path() / "optics/A00000000.json", "damaged");
   const std::vector<ArchivedFile> files{calibration_diagnostics(config)};

@@ -36,7 +36,7 @@ TEST(PrintServer, GetsNamesThatAreNoFolders) {
   EXPECT_EQ(printer_file_name("Vase 1/2.stl"), "Vase 1-2.stl");
   EXPECT_EQ(printer_file_name("Teil 3\\4.stl"), "Teil 3-4.stl");
   EXPECT_EQ(printer_file_name("../oben.stl"), "-oben.stl");
-  EXPECT_EQ(printer_file_name("..."), "Scan");
+  EXPECT_EQ(printer_file_name("...stl"), "Scan.stl");
   EXPECT_EQ(printer_file_name("鸟笼.stl"), "鸟笼.stl");
 }
 
@@ -49,6 +49,8 @@ TEST(PrintServer, SaysInItsOwnWordsWhyItRefuses) {
             "Moonraker answered 400: Root gcodes not available");
   EXPECT_EQ(told(R"({"error": "Can not upload file, invalid file name"})"),
             "Moonraker answered 400: Can not upload file, invalid file name");
+  EXPECT_EQ(told(R"({"error": "no such root\nTraceback"})"),
+            "Moonraker answered 400: no such root");
   EXPECT_EQ(told("no such root\nTraceback"), "Moonraker answered 400: no such root");
   for (const char* silent : {"", "<html>", "{}", "[1]", R"({"error": null})", "\x80\xff"}) {
     EXPECT_EQ(told(silent), "Moonraker answered 400: it refuses the file") << silent;

@@ -9,6 +9,17 @@ export const chosenTheme = () => noted(memory);
 
 /** @param {string | null} theme  "light" or "dark"; null: the browser's */
 export function chooseTheme(theme) {
-  theme === null ? forget(memory) : note(memory, theme);
-  location.reload();
+  const root = document.documentElement;
+  if (theme === null) {
+    forget(memory);
+    delete root.dataset.theme;
+  } else {
+    note(memory, theme);
+    root.dataset.theme = theme;
+  }
+  for (const meta of document.querySelectorAll('meta[name=theme-color]')) {
+    const own = meta.dataset.media ?? meta.media;
+    meta.dataset.media = own;
+    meta.media = theme === null ? own : own.includes(theme) ? '' : 'not all';
+  }
 }

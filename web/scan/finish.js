@@ -24,18 +24,21 @@ function showIcon() {
   part(document, isTabIcon).setAttribute('href', unseen?.icon ?? usualIcon);
 }
 
+/** @type {AudioContext | null} */
+let context = null;
+
 function play() {
-  const context = new AudioContext();
+  const sounds = context ??= new AudioContext();
+  sounds.resume();
   tones_hz.forEach((frequency, index) => {
-    const [tone, volume] = [context.createOscillator(), context.createGain()];
-    const start = context.currentTime + index * betweenTones_s;
+    const [tone, volume] = [sounds.createOscillator(), sounds.createGain()];
+    const start = sounds.currentTime + index * betweenTones_s;
     tone.frequency.value = frequency;
     volume.gain.setValueAtTime(0.2, start);
     volume.gain.exponentialRampToValueAtTime(0.001, start + tone_s);
-    tone.connect(volume).connect(context.destination);
+    tone.connect(volume).connect(sounds.destination);
     tone.start(start);
     tone.stop(start + tone_s);
-    tone.onended = () => index === tones_hz.length - 1 && context.close();
   });
 }
 

@@ -22,6 +22,7 @@ function addLength() {
   }
   element('lengths').append(row);
   show(element('add-length'), number < maxLengths);
+  return row;
 }
 
 function showErrors() {
@@ -40,7 +41,7 @@ export function clearLengths() {
 export function prepareLengths() {
   clearLengths();
   element('lengths').addEventListener('input', showErrors);
-  element('add-length').addEventListener('click', addLength);
+  element('add-length').addEventListener('click', () => part(addLength(), '.on-model').focus());
   element('print-lengths').addEventListener('click', () => {
     setText(element('gauge-when'), when(new Date().toISOString()));
     print();

@@ -323,7 +323,7 @@ export const texts = {
   'reason.moved.turn_deg': 'Noch ein Blick auf den ersten Halt: das Objekt hat sich um {turn_deg} gedreht.',
   'reason.no-map.unevenness_disparity': 'Ein Blick auf eine leere Wand macht Modelle genauer: Der ebene Teller erscheint in 75 cm Abstand um {unevenness_disparity} uneben.',
   'reason.of-side': 'Seite {side}: {words}',
-  'reason.optics.size_share': 'Die Optik des Sensors ist nicht wie bekannt und wurde zu ungenau gemessen, um sie anzuwenden: Maße können um {size_share} falsch sein.',
+  'reason.optics.size_share': 'Die Optik des Sensors ist nicht wie bekannt, und die Drehung, die sie gemessen hat, wurde verworfen: Maße können um {size_share} falsch sein.',
   'reason.part-missing.length_mm': 'Ein Teil des Objekts, {length_mm} lang, war an mehreren Halten zu sehen und ist nicht im Modell.',
   'reason.parts-dropped.parts.volume_cm3': '{parts} Teile, zusammen {volume_cm3}, hingen nicht am Modell und wurden weggelassen.',
   'reason.slip.off_deg.stop': 'An Halt {stop} stand der Teller {off_deg} neben seiner Stelle.',

@@ -334,7 +334,7 @@ export const texts = {
   'reason.moved.turn_deg': 'One more look at the first stop: the object turned by {turn_deg}.',
   'reason.no-map.unevenness_disparity': 'One look at a bare wall makes models more exact: the flat platform looks uneven by {unevenness_disparity} at 75 cm.',
   'reason.of-side': 'Side {side}: {words}',
-  'reason.optics.size_share': 'The sensor’s optics are not as known, and were measured too uncertainly to be applied: sizes may be wrong by {size_share}.',
+  'reason.optics.size_share': 'The sensor’s optics are not as known, and the turn that measured them was refused: sizes may be wrong by {size_share}.',
   'reason.part-missing.length_mm': 'A part of the object, {length_mm} long, was seen by several stops and is not in the model.',
   'reason.parts-dropped.parts.volume_cm3': '{parts} parts, {volume_cm3} in all, were not joined to the model, and were dropped.',
   'reason.slip.off_deg.stop': 'At stop {stop} the platform stood {off_deg} from where it should.',

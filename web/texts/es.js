@@ -323,7 +323,7 @@ export const texts = {
   'reason.moved.turn_deg': 'Otra mirada a la primera parada: el objeto giró {turn_deg}.',
   'reason.no-map.unevenness_disparity': 'Una mirada a una pared desnuda hace los modelos más exactos: el plato plano se ve, a 75 cm, irregular en {unevenness_disparity}.',
   'reason.of-side': 'Lado {side}: {words}',
-  'reason.optics.size_share': 'La óptica del sensor no es la conocida y se midió con demasiada incertidumbre para aplicarla: las medidas pueden fallar en un {size_share}.',
+  'reason.optics.size_share': 'La óptica del sensor no es la conocida y se rechazó el giro que la midió: las medidas pueden fallar en un {size_share}.',
   'reason.part-missing.length_mm': 'Una parte del objeto, de {length_mm}, se vio en varias paradas y no está en el modelo.',
   'reason.parts-dropped.parts.volume_cm3': '{parts} piezas, {volume_cm3} en total, no estaban unidas al modelo y se omitieron.',
   'reason.slip.off_deg.stop': 'En la parada {stop} el plato estaba a {off_deg} de su sitio.',

@@ -323,7 +323,7 @@ export const texts = {
   'reason.moved.turn_deg': 'Un dernier regard sur le premier arrêt : l’objet a tourné de {turn_deg}.',
   'reason.no-map.unevenness_disparity': 'Un regard sur un mur nu rend les modèles plus exacts : le plateau plat paraît, à 75 cm, bosselé de {unevenness_disparity}.',
   'reason.of-side': 'Côté {side} : {words}',
-  'reason.optics.size_share': 'L’optique du capteur n’est pas celle que l’on croyait et a été mesurée trop imprécisément pour être appliquée : les dimensions peuvent être fausses de {size_share}.',
+  'reason.optics.size_share': 'L’optique du capteur n’est pas celle que l’on croyait et le tour qui l’a mesurée a été refusé : les dimensions peuvent être fausses de {size_share}.',
   'reason.part-missing.length_mm': 'Une partie de l’objet, longue de {length_mm}, a été vue par plusieurs arrêts et manque au modèle.',
   'reason.parts-dropped.parts.volume_cm3': '{parts} pièces, {volume_cm3} en tout, ne tenaient pas au modèle et ont été écartées.',
   'reason.slip.off_deg.stop': 'À l’arrêt {stop} le plateau était à {off_deg} de sa place.',

@@ -44,7 +44,7 @@ const Optics unit_spread(0.015, 8, 8, 0.08);
 const Optics turn_spread(0.001, 0.7, 0.7, 0.01);
 constexpr double better_sigma = 0.7;  // of a known sigma: the turn tells more than was known
 /// The share of a length by which the object is sheared, of a wrong principal point's share of the
-/// focal length. Measured on the bunny: 11 pixels of 576 cost 0.3 mm in 160 mm.
+/// focal length; roughly: on a bunny, 11 pixels of 576 cost 0.3 mm in 160 mm.
 constexpr double shear_of_centre = 0.1;
 // Of what no turn tells: it stays as the sensor tells it.
 constexpr double k2_sigma = 0.1;
@@ -242,8 +242,8 @@ CalibrationFinding describe_unused_optics(const SensorOptics& solved, const Intr
   const double share = std::abs(solved.fx / used.fx - 1) + shear_of_centre * centre;
   std::array<char, 192> text{};
   std::snprintf(text.data(), text.size(),
-                "the sensor's optics are not as known, and were measured too uncertainly to be "
-                "applied: sizes may be wrong by %.1f %%",
+                "the sensor's optics are not as known, and the turn that measured them was "
+                "refused: sizes may be wrong by %.1f %%",
                 100 * share);
   return {.code = "optics",
           .detail = text.data(),

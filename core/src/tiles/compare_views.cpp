@@ -12,6 +12,7 @@ namespace {
 constexpr double same_depth = 0.05;  // of the depth: several times the noise of any sensor
 constexpr int grid_columns = 40;
 constexpr std::size_t most_views = 24;
+constexpr std::size_t most_pixels = std::size_t{24} << 20U;  // of all views: 48 MB
 
 /// A reading in metres; 0 is none.
 double depth_at(const Snapshot& view, int u, int v) {
@@ -29,11 +30,12 @@ void look_up(const Snapshot& view, const Snapshot& other, ViewAgreement& found,
     for (int u = step / 2; u < view.frame.width; u += step) {
       const double depth = depth_at(view, u, v);
       const Eigen::Vector3d point = other_from_view * (depth * to_ray(view.intrinsics, u, v));
-      if (depth == 0 || point.z() <= 0) {
+      if (depth == 0 || !(point.z() > 0)) {
         continue;
       }
       const Eigen::Array2d pixel = project(other.intrinsics, point).array().round();
-      if ((pixel < 0).any() || pixel.x() >= other.frame.width || pixel.y() >= other.frame.height) {
+      if (!((pixel >= 0).all() && pixel.x() < other.frame.width &&
+            pixel.y() < other.frame.height)) {
         continue;
       }
       const double seen = depth_at(other, static_cast<int>(pixel.x()), static_cast<int>(pixel.y()));
@@ -78,9 +80,15 @@ ViewAgreement compare_views(std::span<const Snapshot> views) {
 }
 
 std::vector<Snapshot> spread_views(const SnapshotSource& snapshots) {
-  std::vector<Snapshot> views(std::min(snapshots.count, most_views));
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    views[i] = snapshots.read(i * snapshots.count / views.size());
+  std::vector<Snapshot> views;
+  std::size_t number = std::min<std::size_t>(snapshots.count, 1);
+  for (std::size_t i = 0; i < number; ++i) {
+    views.push_back(snapshots.read(i * snapshots.count / number));
+    if (i == 0) {
+      const std::size_t pixels = std::max<std::size_t>(views.front().frame.depth.size(), 1);
+      number =
+          std::min({snapshots.count, most_views, std::max<std::size_t>(most_pixels / pixels, 2)});
+    }
   }
   return views;
 }

@@ -164,13 +164,12 @@ void CalibrationStore::undo(std::string_view camera) {
 void CalibrationStore::drop_without_optics(std::string_view serial) {
   const std::lock_guard writing(writing_);
   std::vector<PoseRecord> all = records();
-  const std::vector<OpticsRecord> optics = last_good_optics(data_, serial);
-  const auto holds = std::ranges::find_if(all, [&](const PoseRecord& record) {
-    return serial.empty() || record.optics_of != serial ||
-           std::ranges::count(optics, record.optics_at, &OpticsRecord::at) > 0;
+  const std::vector<OpticsRecord> optics = read_optics(data_, serial);
+  const auto dropped = std::erase_if(all, [&](const PoseRecord& record) {
+    return !serial.empty() && record.optics_of == serial &&
+           std::ranges::count(optics, record.optics_at, &OpticsRecord::at) == 0;
   });
-  if (holds != all.begin()) {
-    all.erase(all.begin(), holds);
+  if (dropped > 0) {
     write(std::move(all));
   }
 }

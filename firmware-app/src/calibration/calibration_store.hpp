@@ -56,10 +56,10 @@ class CalibrationStore {
   /// @throws Error "not-found"  if there is none; and as `set`
   void undo(std::string_view camera = {});
 
-  /// Restores the pose before those that hold only with optics of a depth sensor that are no longer
-  /// kept: they were taken back, or the power failed before they were written.
+  /// Drops the poses that hold only with optics of a depth sensor that are no longer kept: they
+  /// were taken back, or the power failed before they were written.
   /// @param serial  of the sensor
-  /// @throws  as `set`
+  /// @throws  as `read_optics`, then no pose is dropped, and as `set`
   void drop_without_optics(std::string_view serial);
 
  private:

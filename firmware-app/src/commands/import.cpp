@@ -195,6 +195,7 @@ void import_tum(const ImportArguments& arguments) try {
   Scan scan = gather(std::move(recording), arguments, folder.path(), signal.token());
   const std::string told = settle_convention(folder.path(), scan, arguments.depth_unit.has_value());
   write_scan(folder.path(), scan);
+  static_cast<void>(read_scan(folder.path()));  // refuses a place or a camera beyond its limits
   folder.commit();
   std::cerr << images << " depth images imported";
   if (without_pose > 0) {

@@ -208,7 +208,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
   }
   std::optional<ViewAgreement> agreement;
   if (report && is_tiled) {
-    agreement = compare_views(spread_views(stored_snapshots(arguments.folder, scan, stop)));
+    agreement = compare_views(spread_views(stored_snapshots(arguments.folder, scan)));
     print_agreement(*agreement);
   }
   if (arguments.json) {

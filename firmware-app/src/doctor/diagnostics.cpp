@@ -189,7 +189,9 @@ ArchivedFile calibration_diagnostics(const Config& config) {
   for (const PoseRecord& record :
        CalibrationStore(config.data, config.sensor).records(config.scan)) {
     json pose = to_json(record);
-    pose.erase("camera");  // a serial number
+    for (const char* const serial : {"camera", "optics_of"}) {
+      pose.erase(serial);
+    }
     poses.push_back(std::move(pose));
   }
   return json_file("calibration.json",

@@ -4,6 +4,7 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 #include <semaphore>
 
@@ -57,10 +58,10 @@ std::optional<std::string> gzip_model(const FileSlice& model) {
   if (!packing_models.try_acquire()) {
     return std::nullopt;
   }
+  const std::unique_ptr<void, void (*)(void*)> turn(&packing_models,
+                                                    [](void*) { packing_models.release(); });
   const auto bytes = read_slice(model);
-  auto small = bytes ? gzip(*bytes, Z_BEST_SPEED) : std::nullopt;
-  packing_models.release();
-  return small;
+  return bytes ? gzip(*bytes, Z_BEST_SPEED) : std::nullopt;
 }
 
 std::string* find_header(Headers& headers, std::string_view name) {

@@ -1,6 +1,7 @@
 #include "outgoing/print_server.hpp"
 
 #include <algorithm>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "one_line.hpp"
@@ -62,12 +63,14 @@ std::optional<std::string> json_reason(const std::string& body) try {
 std::string reason_in(const std::string& body) {
   constexpr std::size_t longest = 200;
   std::optional<std::string> reason = json_reason(body);
+  const bool is_json = reason.has_value();
   const auto is_ascii = [](char c) { return c >= ' ' && c <= '~'; };
   if (!reason) {
-    reason = body.substr(0, body.find_first_of("\r\n"));
-    if (!std::ranges::all_of(*reason, is_ascii) || reason->find('<') != reason->npos) {
-      return "";
-    }
+    reason = body;
+  }
+  reason->resize(std::min(reason->size(), reason->find_first_of("\r\n")));
+  if (!is_json && (!std::ranges::all_of(*reason, is_ascii) || reason->find('<') != reason->npos)) {
+    return "";
   }
   std::size_t length = std::min(longest, reason->size());
   while (length > 0 && length < reason->size() && ((*reason)[length] & 0xC0) == 0x80) {
@@ -83,8 +86,10 @@ std::string printer_file_name(std::string name) {
   std::ranges::replace_if(
       name, [](char c) { return c == '/' || c == '\\' || static_cast<unsigned char>(c) < ' '; },
       '-');
-  const std::size_t start = name.find_first_not_of('.');
-  return start == std::string::npos ? "Scan" : name.substr(start);
+  const std::string ending = std::filesystem::path(name).extension().string();
+  std::string stem = name.substr(0, name.size() - ending.size());
+  stem.erase(0, std::min(stem.size(), stem.find_first_not_of('.')));
+  return (stem.empty() ? "Scan" : stem) + ending;
 }
 
 OutgoingRequest upload_request(const Printer& printer, const std::filesystem::path& file,

@@ -86,7 +86,8 @@ std::optional<PrinterTrouble> PrinterUploads::upload(const Printer& printer,
     last_->progress = gone ? 0 : std::min(1.0, static_cast<double>(sent) / std::max(bytes, 1.0));
   };
   OutgoingAnswer answer = ask(upload_request(printer, file, name, storage), stop, on_sent);
-  const bool is_ascii = std::ranges::all_of(name, [](char c) { return c > 0; });
+  const bool is_ascii =
+      std::ranges::all_of(name, [](char c) { return static_cast<unsigned char>(c) < 0x80; });
   if (answer.status == bad_request && !is_ascii) {  // OctoPrint 1.11 takes no other names
     std::string plain_name;
     {

@@ -177,6 +177,12 @@ void expect_size_for_lens(const Picture& picture, const Intrinsics& lens,
   }
 }
 
+/// Whether optics are the same but for the depth scale, which each scan sets.
+bool are_alike(SensorOptics one, const SensorOptics& other) {
+  one.depth_scale = other.depth_scale;
+  return one == other;
+}
+
 }  // namespace
 
 Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& ports)
@@ -485,12 +491,18 @@ void Worker::keep_calibration(const ScanSolution& solution) {
 }
 
 /// Keeps an accepted pose and the optics with which it was solved: later scans of this sensor begin
-/// with both. The pose is written first. It does not hold without these optics, so that after a
-/// power cut in between those before it are in force.
+/// with both. The pose is written first. It does not hold without these optics: after a power cut
+/// in between it is dropped once the sensor is open. Nothing is kept of a scan that began with
+/// other optics than those in force, as one that was paused over a calibration.
 void Worker::keep_pose(PoseRecord pose, const CalibrationReport& report, OpticsOrigin origin) {
   const std::string serial = rig_.laser() == nullptr ? rig_.sensor().serial() : "";
   const bool are_new = report.optics_differ && !serial.empty();
   const auto kept = optics_record(ports_.store.data(), serial);
+  if (kept ? !rig_.optics() || !are_alike(kept->optics.value, rig_.optics()->value)
+           : rig_.optics().has_value() && !serial.empty()) {
+    log::info("calibration", "the pose is the scan's alone: it began with other optics");
+    return;
+  }
   if (are_new || (kept && rig_.optics())) {
     pose.optics_of = serial;
     pose.optics_at = are_new ? pose.at : kept->at;

@@ -97,18 +97,18 @@ class ListFile {
   int line_ = 0;
 };
 
-/// Returns the list of poses: groundtruth.txt, or the only *.gt.freiburg.
+/// Returns the list of poses: groundtruth.txt, or the first *.gt.freiburg.
 fs::path poses_file(const fs::path& folder) {
-  fs::path found = folder / "groundtruth.txt";
+  const fs::path usual = folder / "groundtruth.txt";
   std::error_code error;
-  if (!fs::exists(found, error)) {
+  fs::path found;
+  if (!fs::exists(usual, error)) {
     for (const auto& entry : fs::directory_iterator(folder, error)) {
-      if (entry.path().filename().string().ends_with(".gt.freiburg")) {
-        found = entry.path();
-      }
+      const bool is_list = entry.path().filename().string().ends_with(".gt.freiburg");
+      found = is_list && (found.empty() || entry.path() < found) ? entry.path() : found;
     }
   }
-  return found;
+  return found.empty() ? usual : found;
 }
 
 std::optional<Eigen::Isometry3d> parse_pose(const ListFile& list,
@@ -205,7 +205,10 @@ std::vector<ListedImage> read_images(const fs::path& folder) {
   ListFile list(folder / (has_depth_list ? "depth.txt" : "associations.txt"));
   std::vector<ListedImage> images;
   while (auto words = list.next()) {
-    const bool is_second = words->size() == 4 && !(*words)[1].starts_with("depth");
+    const auto is_depth = [&](std::size_t column) {
+      return (*words)[column].find("depth") != std::string::npos;
+    };
+    const bool is_second = words->size() == 4 && !is_depth(1) && is_depth(3);
     if (words->size() != 2 && (has_depth_list || words->size() != 4)) {
       list.refuse("must be a time and the name of a depth image");
     }

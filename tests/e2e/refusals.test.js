@@ -10,13 +10,11 @@ test('without a sensor the page says so, and what to do', async (t) => {
   const {sensor} = await ask(scanner, 'status');
   assert.notEqual(sensor.state, 'ready');
   await page.getByRole('list', {name: 'Devices'}).getByText(/not found|failed/).first().waitFor();
-  await page.getByRole('button', {name: 'Start scan'}).click();
-  const alert = page.getByRole('alert').filter({hasText: 'The scan did not start'});
-  await alert.waitFor();
-  assert.ok((await page.locator('#problem-hint').innerText()).length > 10);
+  const start = page.getByRole('button', {name: 'Start scan'});
+  assert.equal(await start.getAttribute('aria-disabled'), 'true');
+  await start.click({force: true});
   await picture(page, 'no-sensor');
-  await alert.getByRole('button', {name: 'Dismiss'}).click();
-  assert.ok(await alert.isHidden());
+  assert.deepEqual((await ask(scanner, 'scans')).scans, [], 'no scan was tried');
 
   await page.getByRole('button', {name: 'Open a demo scan'}).click();
   await page.getByText('A good model', {exact: true}).waitFor();

@@ -304,7 +304,9 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
   judge_findings(judgement, findings);
   judge_height(judgement, scan, model);
   judge_coverage(judgement, scan, model);
-  judge_fill(judgement, scan, model);
+  if (scan.by_lines) {  // a depth sensor does not see below what overhangs
+    judge_fill(judgement, scan, model);
+  }
   if (scan.platform_height.value_or(0) <= look_height) {  // else they would judge the platform
     judge_box(judgement, scan);
     judge_parts(judgement, scan, model);
@@ -317,9 +319,7 @@ Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
   ScanFigures first = poses.front();
   // Another pose may have seen what lies in a gap between the stops of one, or what is filled in.
   first.widest_gap = std::ranges::min(poses, {}, &ScanFigures::widest_gap).widest_gap;
-  for (const ScanFigures& other : poses.subspan(1)) {
-    first.seen.insert(first.seen.end(), other.seen.begin(), other.seen.end());
-  }
+  first.by_lines = first.by_lines && poses.size() == 1;
   Quality quality = judge(first, model, findings);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     add_reasons(quality, judge_side(poses[i], model), i + 1);

@@ -107,6 +107,7 @@ TEST(Judge, LooksForASideThatNobodySaw) {
 
 TEST(Judge, TellsOfFillFarFromEverythingThatWasSeen) {
   ScanFigures scan = right_scan();
+  scan.by_lines = true;
   scan.seen = {{0, 0, 0.02}, {0.03, 0, 0.02}};
   ModelReport model = right_model();
   model.places.unseen = {{0.055, 0, 0.02}, {-0.02, 0, 0.02}};  // 25 and 20 mm away
@@ -116,6 +117,8 @@ TEST(Judge, TellsOfFillFarFromEverythingThatWasSeen) {
   ASSERT_EQ(codes(quality), Codes{"filled-far"});
   EXPECT_EQ(quality.reasons[0].places, std::vector<Eigen::Vector3d>{model.places.unseen.back()});
   EXPECT_NEAR(std::get<double>(quality.reasons[0].parameters.at("fill_mm")), 60, 1e-9);
+  scan.by_lines = false;
+  EXPECT_EQ(judge(scan, model), Quality{}) << "a depth sensor does not see below a ball";
 }
 
 TEST(Judge, NamesTheSideOfTheBoxThatCutsTheObject) {

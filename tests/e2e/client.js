@@ -50,5 +50,5 @@ export async function scanByClient(baseUrl) {
   dataOf(await client.POST('/api/v1/scans/{id}/restore', {params}));
   const model = await client.GET('/api/v1/scans/{id}/Scan.stl', {params, parseAs: 'arrayBuffer'});
   const {error} = await client.POST('/api/v1/scans', {body: {snapshots: 0}});
-  return {id, verdict: scan.model?.quality?.verdict, bytes: model.data?.byteLength, refused: error?.code};
+  return {id, verdict: scan.model?.quality?.verdict, bytes: model.data?.byteLength ?? 0, refused: error?.code};
 }

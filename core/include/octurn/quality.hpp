@@ -80,6 +80,7 @@ struct ScanFigures {
   std::vector<Eigen::Vector3d> contradicted_places = {};
   /// Metres, object's frame: centres of 5 mm cells in which several stops saw the object.
   std::vector<Eigen::Vector3d> seen = {};
+  bool by_lines = false;  ///< whether the stops saw lines of lasers
 };
 
 /// Measures the depth images of a scan while they are read for its model.

@@ -40,7 +40,8 @@ struct ScanCheck::Stop {
   /// Metres, object's frame: pixels at which the box cuts, as in `ScanFigures::cut_pixels`.
   std::array<std::vector<Eigen::Vector3f>, 5> cut = {};
   std::vector<ObjectCell> seen = {};  ///< cells with readings of a surface inside the box
-  std::vector<std::size_t> heights;   ///< of readings near z = 0, a count for each step
+  bool has_lines = false;
+  std::vector<std::size_t> heights;  ///< of readings near z = 0, a count for each step
 
  private:
   Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask);

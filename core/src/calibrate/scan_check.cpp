@@ -114,6 +114,7 @@ ScanFigures ScanCheck::figures(int threads) const {
   figures.widest_gap = find_widest_gap(stops);
   figures.platform_height = find_platform(stops);
   figures.seen = find_seen(stops);
+  figures.by_lines = std::ranges::any_of(stops, &Stop::has_lines);
   StopComparison comparison = compare_stops(stops, threads);
   figures.disagreement = comparison.disagreement;
   figures.disagreeing_places = std::move(comparison.disagreeing_places);

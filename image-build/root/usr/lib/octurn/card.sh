@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# Sourced by programs that use the card's FAT partition. It is mounted only while it is used, so that it is clean if power fails or
+# Sourced by programs that use the card's partitions. The FAT is mounted only while it is used, so that it is clean if power fails or
 # the card is removed.
 
 card=/boot/firmware
@@ -18,6 +18,9 @@ unmount_card() {
   umount "$card"
   exec 9>&-
 }
+
+# has_data: whether the data partition is mounted. In a sandbox, each folder that may be written to is a mount point.
+has_data() { [ "$(stat -c %d /data)" != "$(stat -c %d /)" ]; }
 
 # read_card NAME TO: copies a file of the card, if it is there.
 read_card() {

@@ -70,9 +70,6 @@ find_wifi() {
   find_key "$1"
 }
 
-# has_data: whether the data partition is there. In a sandbox, each folder that may be written to is a mount point.
-has_data() { [ "$(stat -c %d /data)" != "$(stat -c %d /)" ]; }
-
 # keep: replaces the stored lines by standard input; fails if there is no data partition.
 keep() {
   { [ -n "$root" ] || has_data; } &&

@@ -1,26 +1,8 @@
 // Archives of scans, written and damaged here, and sent to the daemon.
 
 import {request} from 'node:http';
-import {crc32, deflateSync} from 'node:zlib';
 
-const table = Array.from({length: 256}, (_, n) => {
-  for (let i = 0; i < 8; ++i) {
-    n = n & 1 ? (n >>> 1) ^ 0xedb88320 : n >>> 1;
-  }
-  return n >>> 0;
-});
-
-/** CRC-32, which older versions of node's zlib lack. @returns {number} */
-function sumOf(bytes) {
-  if (crc32) {
-    return crc32(bytes);
-  }
-  let sum = 0xffffffff;
-  for (const byte of bytes) {
-    sum = table[(sum ^ byte) & 255] ^ (sum >>> 8);
-  }
-  return (sum ^ 0xffffffff) >>> 0;
-}
+import {crc32, depthPng} from '../support/depth_png.mjs';
 
 /** A zip archive of files that are stored as they are. @param {[string, Buffer|string][]} files */
 export function zipOf(files) {
@@ -32,7 +14,7 @@ export function zipOf(files) {
     const head = Buffer.alloc(26); // from the version that is needed to the length of the extra field
     head.writeUInt16LE(20, 0);
     head.writeUInt32LE(0x00210000, 6); // 1 January 1980
-    head.writeUInt32LE(sumOf(bytes), 10);
+    head.writeUInt32LE(crc32(bytes), 10);
     head.writeUInt32LE(bytes.length, 14);
     head.writeUInt32LE(bytes.length, 18);
     head.writeUInt16LE(name.length, 22);
@@ -53,29 +35,6 @@ export function zipOf(files) {
   return Buffer.concat([...local, list, end]);
 }
 
-function chunk(kind, content) {
-  const bytes = Buffer.concat([Buffer.from(kind), content]);
-  const framed = Buffer.alloc(8);
-  framed.writeUInt32BE(content.length, 0);
-  framed.writeUInt32BE(sumOf(bytes), 4);
-  return Buffer.concat([framed.subarray(0, 4), bytes, framed.subarray(4)]);
-}
-
-/** A depth image as PNG, 16 bits a pixel. @param {(u: number, v: number) => number} depth */
-export function depthPng(width, height, depth) {
-  const head = Buffer.alloc(13);
-  head.writeUInt32BE(width, 0);
-  head.writeUInt32BE(height, 4);
-  head[8] = 16;
-  const rows = Buffer.alloc(height * (1 + 2 * width));
-  for (let v = 0; v < height; ++v) {
-    for (let u = 0; u < width; ++u) {
-      rows.writeUInt16BE(depth(u, v), v * (1 + 2 * width) + 1 + 2 * u);
-    }
-  }
-  return Buffer.concat([Buffer.from('\x89PNG\r\n\x1a\n', 'latin1'), chunk('IHDR', head), chunk('IDAT', deflateSync(rows)), chunk('IEND', Buffer.alloc(0))]);
-}
-
 /** The scan.json of a scan of so many snapshots, in units of 0.1 mm. */
 export function scanJson(snapshots, width, height) {
   return {
@@ -83,13 +42,15 @@ export function scanJson(snapshots, width, height) {
     sensor: {name: 'test', width, height, fx: width, fy: width, cx: width / 2, cy: height / 2, depth_unit_m: 0.0001},
     calibration: {platform_from_sensor: [[1, 0, 0, 0], [0, -1, 0, 0], [0, 0, -1, 0.7], [0, 0, 0, 1]]},
     clip_m: {min: [-0.14, -0.14, 0.005], max: [0.14, 0.14, 0.4]},
-    snapshots: Array.from({length: snapshots}, (_, i) => ({file: `snapshots/${String(i).padStart(3, '0')}.png`, angle_deg: (i * 360) / snapshots})),
+    snapshots: Array.from({length: snapshots}, (_, i) =>
+      ({file: `snapshots/${String(i).padStart(3, '0')}.png`, angle_deg: (i * 360) / snapshots})),
   };
 }
 
 /** A scan of a box of 6 cm on the platform, seen from above, as files. */
 export function smallScan(snapshots = 3, width = 48, height = 36) {
-  const png = depthPng(width, height, (u, v) => (Math.abs(u - width / 2) < width / 20 * 2 && Math.abs(v - height / 2) < height / 8 ? 6400 : 7000));
+  const isBox = (u, v) => Math.abs(u - width / 2) < width / 10 && Math.abs(v - height / 2) < height / 8;
+  const png = depthPng(width, height, (u, v) => isBox(u, v) ? 6400 : 7000);
   const scan = scanJson(snapshots, width, height);
   return [['scan.json', JSON.stringify(scan)], ...scan.snapshots.map(({file}) => [file, png])];
 }
@@ -105,7 +66,8 @@ export function manySnapshots(count, width, height) {
 export function importOf(daemon, archive) {
   return new Promise((resolve, reject) => {
     const headers = {'Content-Type': 'application/octet-stream', 'Content-Length': archive.length};
-    const sent = request({host: '127.0.0.1', port: daemon.port, method: 'POST', path: '/api/v1/scans/import', headers, agent: false}, (response) => {
+    const to = {host: '127.0.0.1', port: daemon.port, method: 'POST', path: '/api/v1/scans/import', agent: false};
+    const sent = request({...to, headers}, (response) => {
       let text = '';
       response.setEncoding('utf8').on('data', (part) => (text += part)).on('error', reject);
       response.on('end', () => resolve({status: response.statusCode, text}));

@@ -57,8 +57,11 @@ const spellSchemes = {name: 'schemes', setup: ({onLoad}) => {
     const text = await readFile(path, 'utf8');
     const colours = [...text.matchAll(/--[a-z-]+: [^;]*light-dark[^;]*;/g)].map(([colour]) => colour).join('');
     const [light, dark] = ['$1', '$2'].map((one) => colours.replace(lightDark, one));
-    return {loader: 'css', contents: `${text}@supports not (color: light-dark(red, red)) { :root { ${light} }
-      @media (prefers-color-scheme: dark) { :root:not([data-theme=light]) { ${dark} } } :root[data-theme=dark] { ${dark} } }`};
+    return {loader: 'css', contents: `${text}@supports not (color: light-dark(red, red)) {
+      :root { ${light} }
+      @media (prefers-color-scheme: dark) { :root:not([data-theme=light]) { ${dark} } }
+      :root[data-theme=dark] { ${dark} }
+    }`};
   });
 }};
 const common = {
@@ -86,8 +89,10 @@ const fromPage = (path) => relative(target, join(source, path));
 
 /** Bundles a document's stylesheets into one file, in their order. @param {string[]} files @returns {Promise<string>} */
 async function bundleStyles(files) {
-  const {metafile} = await build({...common, entryNames: `${basename(files.at(-1), '.css')}-[hash]`, external: ['icons/*'], plugins: [spellSchemes], stdin: {
-    contents: files.map((file) => `@import "./${file}";`).join('\n'), loader: 'css', resolveDir: source, sourcefile: 'document.css'}});
+  const contents = files.map((file) => `@import "./${file}";`).join('\n');
+  const {metafile} = await build({
+    ...common, entryNames: `${basename(files.at(-1), '.css')}-[hash]`, external: ['icons/*'], plugins: [spellSchemes],
+    stdin: {contents, loader: 'css', resolveDir: source, sourcefile: 'document.css'}});
   return fromPage(Object.keys(metafile.outputs)[0]);
 }
 

@@ -80,8 +80,14 @@ function sidesOf(state, scan) {
 }
 
 /** @param {import('./api/api.js').Model} model */
-const sizeFacts = ({quality}) => !quality?.size_error ? [] : [{label: text('fact.size-error'), text: text('fact.size-error-of', {
-  error: format.millimetres(quality.size_error.mm, 1), length: format.millimetres(quality.size_error.of_mm, 0)})}];
+function sizeFacts({quality}) {
+  if (!quality?.size_error) {
+    return [];
+  }
+  const {mm, of_mm} = quality.size_error;
+  const error = text('fact.size-error-of', {error: format.millimetres(mm, 1), length: format.millimetres(of_mm, 0)});
+  return [{label: text('fact.size-error'), text: error}];
+}
 
 /** @param {Scan} scan  as shown @param {Scan[]} sides @returns {{label: string, text: string, tone?: Tone}[]} */
 function factsOf(scan, sides) {

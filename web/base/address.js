@@ -7,4 +7,7 @@ export const root = 'api/v1/';
  *
  * @param {string} body
  */
-export const parse = (body) => JSON.parse(body, (key, value) => key === 'url' && value?.startsWith?.(`/${root}`) ? value.slice(1) : value);
+export const parse = (body) => JSON.parse(body, (key, value) => {
+  const isOurs = key === 'url' && value?.startsWith?.(`/${root}`);
+  return isOurs ? value.slice(1) : value;
+});

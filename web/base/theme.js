@@ -1,4 +1,4 @@
-// The theme chosen in the settings. theme.js applies it when a document is opened.
+// The theme chosen in the settings. theme.js shows it, also when a document is opened.
 
 import {forget, note, noted} from './storage.js';
 
@@ -9,17 +9,6 @@ export const chosenTheme = () => noted(memory);
 
 /** @param {string | null} theme  "light" or "dark"; null: the browser's */
 export function chooseTheme(theme) {
-  const root = document.documentElement;
-  if (theme === null) {
-    forget(memory);
-    delete root.dataset.theme;
-  } else {
-    note(memory, theme);
-    root.dataset.theme = theme;
-  }
-  for (const meta of document.querySelectorAll('meta[name=theme-color]')) {
-    const own = meta.dataset.media ?? meta.media;
-    meta.dataset.media = own;
-    meta.media = theme === null ? own : own.includes(theme) ? '' : 'not all';
-  }
+  theme === null ? forget(memory) : note(memory, theme);
+  /** @type {any} */ (globalThis).showTheme(theme);
 }

@@ -147,7 +147,13 @@ export function warmText(seconds) {
 /** @param {KnownLength} length */
 const isEntered = ({model_mm, caliper_mm}) => model_mm > 0 && caliper_mm > 0;
 
-/** The factor that fits models to their objects: least squares of the lengths' errors. @param {KnownLength[]} lengths  entered ones */
+/** @param {KnownLength} length */
+const isEmpty = ({model_mm, caliper_mm}) => Number.isNaN(model_mm) && Number.isNaN(caliper_mm);
+
+/**
+ * The factor that fits models to their objects: least squares of the lengths' errors.
+ * @param {KnownLength[]} lengths  entered ones
+ */
 const factorOf = (lengths) => lengths.reduce((sum, {model_mm, caliper_mm}) => sum + model_mm * caliper_mm, 0) /
   lengths.reduce((sum, {model_mm}) => sum + model_mm * model_mm, 0);
 
@@ -158,7 +164,7 @@ const factorOf = (lengths) => lengths.reduce((sum, {model_mm, caliper_mm}) => su
  */
 export function scaleOf(lengths, scale) {
   const entered = lengths.filter(isEntered);
-  const isHalf = lengths.some((length) => !isEntered(length) && !(Number.isNaN(length.model_mm) && Number.isNaN(length.caliper_mm)));
+  const isHalf = lengths.some((length) => !isEntered(length) && !isEmpty(length));
   if (entered.length === 0 || isHalf) {
     return {scale, problem: text('scale.both')};
   }
@@ -181,7 +187,8 @@ export function gaugeOf(lengths) {
   }
   const described = (/** @type {number} */ factor) => {
     const errors = entered.map(({model_mm, caliper_mm}) => Math.abs(factor * model_mm - caliper_mm));
-    return {mean: millimetres(errors.reduce((sum, error) => sum + error, 0) / errors.length, 2), worst: millimetres(Math.max(...errors), 2)};
+    const mean = errors.reduce((sum, error) => sum + error, 0) / errors.length;
+    return {mean: millimetres(mean, 2), worst: millimetres(Math.max(...errors), 2)};
   };
   const now = described(1);
   const {mean: meanScaled, worst: worstScaled} = described(factorOf(entered));

@@ -1,4 +1,5 @@
-// The card with known lengths on the page Calibrate: lengths of a model beside those of its object, and how far the model is off.
+// The card with known lengths on the page Calibrate: lengths of a model beside those of its object, and how far the
+// model is off.
 
 import {copyOf, element, part, setText, show} from '../base/dom.js';
 import {when} from '../base/format.js';
@@ -11,12 +12,16 @@ const maxLengths = 8;
 const rows = () => [...element('lengths').querySelectorAll('.length')];
 
 /** The lengths in the form. @returns {import('./calibration.js').KnownLength[]} */
-export const enteredLengths = () => rows().map((row) => ({model_mm: part(row, '.on-model').valueAsNumber, caliper_mm: part(row, '.by-caliper').valueAsNumber}));
+export const enteredLengths = () => rows().map((row) => ({
+  model_mm: part(row, '.on-model').valueAsNumber,
+  caliper_mm: part(row, '.by-caliper').valueAsNumber,
+}));
 
 function addLength() {
   const number = rows().length + 1;
   const row = copyOf('length-row');
-  for (const [input, key] of [['.on-model', 'calibrate.on-model-label'], ['.by-caliper', 'calibrate.by-caliper-label']]) {
+  const labels = {'.on-model': 'calibrate.on-model-label', '.by-caliper': 'calibrate.by-caliper-label'};
+  for (const [input, key] of Object.entries(labels)) {
     part(row, input).setAttribute('aria-label', number === 1 ? text(key) : `${text(key)} (${number})`);
     part(row, input).required = number === 1;
   }

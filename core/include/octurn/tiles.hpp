@@ -43,10 +43,11 @@ struct ViewAgreement {
   /// none.
   double share() const;
 
-  /// How much speaks for the poses: wrong ones may make many readings agree, and more contradict.
+  /// Agreeing less contradicted readings: by wrong poses many may agree, but more contradict.
   double net() const { return static_cast<double>(agreeing) - static_cast<double>(contradicted); }
 
-  /// Whether some agree, and at most two in five contradict: noise and a moving scene make some.
+  /// Whether some agree, and at most two in five contradict. Noise, and what moved in the scene,
+  /// contradict right poses, too.
   bool is_credible() const { return agreeing > 0 && share() >= 0.6; }
 };
 
@@ -54,7 +55,7 @@ struct ViewAgreement {
 /// for a pair.
 ViewAgreement compare_views(std::span<const Snapshot> views);
 
-/// Reads at most 24 snapshots all over a scan, to compare them.
+/// Reads at most 24 snapshots, evenly spread over a scan.
 std::vector<Snapshot> spread_views(const SnapshotSource& snapshots);
 
 /// The index of a tile: (0, 0, 0) is the root cube, (1, 0, 0) the cube beside it along X. Sorted by

@@ -81,14 +81,15 @@ ViewAgreement compare_views(std::span<const Snapshot> views) {
 
 std::vector<Snapshot> spread_views(const SnapshotSource& snapshots) {
   std::vector<Snapshot> views;
-  std::size_t number = std::min<std::size_t>(snapshots.count, 1);
-  for (std::size_t i = 0; i < number; ++i) {
+  if (snapshots.count == 0) {
+    return views;
+  }
+  views.push_back(snapshots.read(0));
+  const std::size_t pixels = std::max<std::size_t>(views.front().frame.depth.size(), 1);
+  const std::size_t number =
+      std::min({snapshots.count, most_views, std::max<std::size_t>(most_pixels / pixels, 2)});
+  for (std::size_t i = 1; i < number; ++i) {
     views.push_back(snapshots.read(i * snapshots.count / number));
-    if (i == 0) {
-      const std::size_t pixels = std::max<std::size_t>(views.front().frame.depth.size(), 1);
-      number =
-          std::min({snapshots.count, most_views, std::max<std::size_t>(most_pixels / pixels, 2)});
-    }
   }
   return views;
 }

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <array>
 #include <filesystem>
 #include <iostream>
 #include <span>
@@ -112,73 +111,88 @@ Eigen::Isometry3d pose_by(const Convention& convention, Eigen::Isometry3d pose) 
   return convention.is_mirrored ? with_y_down(pose) : pose;
 }
 
-ViewAgreement agreement_by(const Convention& convention, std::vector<Snapshot> views) {
+/// A convention, and how far the depth images agree by it.
+struct Trial {
+  Convention convention = {};
+  ViewAgreement agreement = {};
+};
+
+Trial try_convention(const Convention& convention, std::vector<Snapshot> views) {
   for (Snapshot& view : views) {
     view.intrinsics.depth_unit = convention.depth_unit;
     view.object_from_sensor = pose_by(convention, view.object_from_sensor);
   }
-  return compare_views(views);
+  return {.convention = convention, .agreement = compare_views(views)};
 }
 
-/// The convention by which the depth images agree best: the layout's own, unless another one is
-/// far better.
-Convention find_convention(const std::vector<Snapshot>& views, const Convention& own,
-                           std::span<const double> units) {
+/// Finds the convention by which the depth images agree best: the layout's own, unless another one
+/// is far better.
+Trial find_convention(const std::vector<Snapshot>& views, const Trial& own,
+                      std::span<const double> units) {
   constexpr double far_better = 1.5;
   constexpr double believable = 0.8;
-  Convention best = own;
-  double most = far_better * std::max(0.0, agreement_by(own, views).net());
+  Trial best = own;
+  double most = far_better * std::max(0.0, own.agreement.net());
   for (const double unit : units) {
     for (unsigned bits = 0; bits < 8; ++bits) {
-      const Convention tried{.depth_unit = unit,
-                             .is_inverted = (bits & 1U) != 0,
-                             .is_back_to_front = (bits & 2U) != 0,
-                             .is_mirrored = (bits & 4U) != 0};
-      const ViewAgreement found = agreement_by(tried, views);
-      if (found.net() > most && found.share() > believable) {
-        best = tried;
-        most = found.net();
+      const Trial trial = try_convention({.depth_unit = unit,
+                                          .is_inverted = (bits & 1U) != 0,
+                                          .is_back_to_front = (bits & 2U) != 0,
+                                          .is_mirrored = (bits & 4U) != 0},
+                                         views);
+      if (trial.agreement.net() > most && trial.agreement.share() > believable) {
+        best = trial;
+        most = trial.agreement.net();
       }
     }
   }
   return best;
 }
 
-/// Finds the scan's convention from its own depth images, and rewrites its poses and depth unit.
-/// @return what was found, for people: nothing, or lines
-std::string settle_convention(const fs::path& folder, Scan& scan, bool has_unit) {
-  const std::vector<Snapshot> views = spread_views(stored_snapshots(folder, scan));
-  constexpr double millimetre = 0.001;
-  const Convention own{.depth_unit = scan.intrinsics.depth_unit};
-  const std::array units{own.depth_unit, has_unit ? own.depth_unit : millimetre};
-  const Convention found = find_convention(views, own, units);
-  scan.intrinsics.depth_unit = found.depth_unit;
-  for (Shot& shot : scan.shots) {
-    shot.object_from_sensor = pose_by(found, *shot.object_from_sensor);
+/// Describes a convention that is not the layout's own, for people; empty for that one.
+std::string describe(const Trial& found, const Trial& own) {
+  std::ostringstream text;
+  if (found.convention.depth_unit != own.convention.depth_unit) {
+    text << "The depth unit is 1 mm, not 1/5000 m.\n";
   }
-  std::ostringstream told;
-  if (found.depth_unit != own.depth_unit) {
-    told << "The depth unit is 1 mm, not 1/5000 m.\n";
+  if (found.convention.is_inverted) {
+    text << "The poses were those of the world in the camera's frame: they are inverted.\n";
   }
-  if (found.is_inverted) {
-    told << "The poses were those of the world in the camera's frame: they are inverted.\n";
-  }
-  if (found.is_back_to_front) {
-    told << "The poses were of a camera whose Y points up and whose Z points back: they are "
+  if (found.convention.is_back_to_front) {
+    text << "The poses were of a camera whose Y points up and whose Z points back: they are "
             "turned.\n";
   }
-  if (found.is_mirrored) {
-    told << "The poses were mirrored: the sign of their Y is changed.\n";
+  if (found.convention.is_mirrored) {
+    text << "The poses were mirrored: the sign of their Y is changed.\n";
   }
-  if (told.tellp() > 0) {
-    const ViewAgreement agreement = agreement_by(found, views);
-    told << "Thus " << agreement.agreeing << " readings agree with another depth image, and "
-         << agreement.contradicted << " contradict one; as written, "
-         << agreement_by(own, views).agreeing << " agree.\n";
-  } else if (views.size() > 1) {
-    print_agreement(agreement_by(own, views));
+  if (text.tellp() > 0) {
+    text << "Thus " << found.agreement.agreeing << " readings agree with another depth image, and "
+         << found.agreement.contradicted << " contradict one; as written, "
+         << own.agreement.agreeing << " agree.\n";
   }
-  return told.str();
+  return text.str();
+}
+
+/// Finds the scan's convention from its own depth images, and rewrites its poses and depth unit.
+/// @return as `describe`
+std::string settle_convention(const fs::path& folder, Scan& scan, bool has_unit) {
+  constexpr double millimetre = 0.001;
+  const std::vector<Snapshot> views = spread_views(stored_snapshots(folder, scan));
+  const Trial own = try_convention({.depth_unit = scan.intrinsics.depth_unit}, views);
+  std::vector<double> units{own.convention.depth_unit};
+  if (!has_unit) {
+    units.push_back(millimetre);
+  }
+  const Trial found = find_convention(views, own, units);
+  scan.intrinsics.depth_unit = found.convention.depth_unit;
+  for (Shot& shot : scan.shots) {
+    shot.object_from_sensor = pose_by(found.convention, *shot.object_from_sensor);
+  }
+  std::string description = describe(found, own);
+  if (description.empty() && views.size() > 1) {
+    print_agreement(own.agreement);
+  }
+  return description;
 }
 
 }  // namespace
@@ -193,7 +207,8 @@ void import_tum(const ImportArguments& arguments) try {
   const std::size_t without_pose = recording.without_pose;
   NewFolder folder(arguments.output);
   Scan scan = gather(std::move(recording), arguments, folder.path(), signal.token());
-  const std::string told = settle_convention(folder.path(), scan, arguments.depth_unit.has_value());
+  const std::string convention =
+      settle_convention(folder.path(), scan, arguments.depth_unit.has_value());
   write_scan(folder.path(), scan);
   static_cast<void>(read_scan(folder.path()));  // refuses a place or a camera beyond its limits
   folder.commit();
@@ -201,7 +216,7 @@ void import_tum(const ImportArguments& arguments) try {
   if (without_pose > 0) {
     std::cerr << "; " << without_pose << " left out, as the recording has no pose near their time";
   }
-  std::cerr << ".\n" << told;
+  std::cerr << ".\n" << convention;
 } catch (const fs::filesystem_error& error) {
   const bool is_full = error.code() == std::errc::no_space_on_device;
   throw Error(is_full ? ErrorCode::disk_full : ErrorCode::write_failed,

@@ -63,8 +63,8 @@ struct CalibrationReport {
   std::vector<CalibrationFinding> findings = {};
   /// What is known of the optics after the turn; nothing if it tells nothing of them.
   std::optional<SolvedOptics> optics = {};
-  /// Whether they differ by far more than their sigma from those with which the turn was read. If
-  /// accepted, the pose holds only together with them.
+  /// Whether they replace those with which the turn was read: they are far from them, or known far
+  /// better. If accepted, the pose holds only together with them.
   bool optics_differ = false;
 
   /// Whether the configured pose is within three sigma of the solved one, or within 0.1 mm and 0.05

@@ -199,12 +199,15 @@ bool shows_optics(const CalibrationTurn& turn, const CalibrationReport& report, 
   return is_solvable && !is_uneven && all_stand_as_told(report);
 }
 
-/// Solves optics and pose together, and takes both if the optics are not the told ones.
-/// @param are_significant  set if they are far from those that the turn was read with
-/// @return the distance of the axis's last step, metres, if it takes them
-std::optional<double> take_optics(CalibrationReport& report, TurnViews& views,
-                                  const TurnReader& reader, const CalibrationTurn& turn,
-                                  int threads, bool& are_significant) {
+struct TakenOptics {
+  double last_step = 0;          // of the axis, metres
+  bool are_significant = false;  // far from those with which the turn was read
+};
+
+/// Solves optics and pose together, and takes both if the turn knows the optics better.
+std::optional<TakenOptics> take_optics(CalibrationReport& report, TurnViews& views,
+                                       const TurnReader& reader, const CalibrationTurn& turn,
+                                       int threads) {
   const auto solved = solve_optics(views, reader.samples(), reader.plane(), turn,
                                    report.platform_from_sensor, threads);
   if (!solved) {
@@ -223,13 +226,13 @@ std::optional<double> take_optics(CalibrationReport& report, TurnViews& views,
     return std::nullopt;
   }
   report.optics_differ = true;
-  are_significant = solved->significance >= min_significance;
   report.platform_from_sensor = solved->axis.platform_from_sensor;
   report.position_sigma = solved->axis.position_sigma();
   report.direction_sigma = solved->axis.direction_sigma();
   const std::vector<double> as_told(turn.angles.size(), 0.0);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
-  return solved->axis.last_step;
+  return TakenOptics{.last_step = solved->axis.last_step,
+                     .are_significant = solved->significance >= min_significance};
 }
 
 CalibrationReport refused(CalibrationReport report, const std::string& reason) {
@@ -272,10 +275,11 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
   double last_step = solution->last_step;
-  bool has_other_optics = false;
-  if (shows_optics(turn, report, is_uneven)) {
-    last_step =
-        take_optics(report, views, reader, turn, threads, has_other_optics).value_or(last_step);
+  const auto optics = shows_optics(turn, report, is_uneven)
+                          ? take_optics(report, views, reader, turn, threads)
+                          : std::nullopt;
+  if (optics) {
+    last_step = optics->last_step;
   }
   compare_with_told(report, turn.platform_from_sensor);
   const std::string reason = surface.bump && surface.bump->size > max_after
@@ -287,7 +291,7 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
     return refused(std::move(report), still->reason);
   }
   report.accepted = reason.empty();
-  if (has_other_optics && !report.accepted) {
+  if (optics && optics->are_significant && !report.accepted) {
     report.findings.push_back(describe_unused_optics(report.optics->value, turn.intrinsics));
   }
   return refused(std::move(report), reason);

@@ -143,7 +143,7 @@ class OpticsState {
   Isometry3d pose;
   Vector2d tilt = Vector2d::Zero();  // of the platform against the axis: dz/dx and dz/dy
   Optics optics = Optics::Zero();    // their change, in the order of the optics_unknowns
-  Optics spread;                     // sigmas of the told ones
+  Optics spread;                     // sigmas of the optics before the turn
 
  private:
   Intrinsics sensor_;

@@ -14,7 +14,7 @@ namespace octurn {
 struct OpticsSolution {
   SolvedOptics optics = {};
   AxisSolution axis = {};  ///< its covariance is that with these optics
-  /// Squared Mahalanobis distance of the optics from the told ones: chi^2 of 4 degrees if these are
+  /// Squared Mahalanobis distance of the optics from their prior: chi^2 of 4 degrees if these are
   /// right.
   double significance = 0;
   bool is_better = false;  ///< far smaller sigmas than those of known optics
@@ -27,7 +27,7 @@ struct OpticsSolution {
 /// it: lengths across the optical axis turn into lengths along it (focal length), and right angles
 /// between them are sheared (principal point). Deformations that turn with the object, above all
 /// the overall scale, no turn shows: the depth's scale and offset stay as they are. Members that
-/// the turn does not determine stay near the told ones. Those of a data sheet have the spread of
+/// the turn does not determine stay near their prior. Those of a data sheet have the spread of
 /// published units: 1.5 % of the focal length, 8 pixels of the principal point, 0.08 of k1. Known
 /// ones have their own sigmas, so that the result is the weighted mean of them and the turn's.
 ///

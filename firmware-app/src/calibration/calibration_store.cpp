@@ -48,10 +48,12 @@ std::vector<PoseRecord> read_records(const fs::path& file) {
 }
 
 std::vector<PoseRecord> last_good_records(const fs::path& data, SensorKind kind) {
-  auto records = last_good([&] { return read_records(file_in(data, kind)); });
-  return records ? *std::move(records) : last_good([&] {
-                                           return read_records(copy_in(data, kind));
-                                         }).value_or(std::vector<PoseRecord>());
+  for (const fs::path& file : {file_in(data, kind), copy_in(data, kind)}) {
+    if (auto records = last_good([&] { return read_records(file); })) {
+      return *std::move(records);
+    }
+  }
+  return {};
 }
 
 bool is_told(const PoseRecord& record) {

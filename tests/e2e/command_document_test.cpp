@@ -92,6 +92,13 @@ TEST(CommandDocument, AndTheOthersNameEachOption) {
   }
 }
 
+TEST(CommandDocument, WritesNumbersOfTheHelpOut) {
+  for (const std::string& command : commands()) {
+    EXPECT_EQ(matches(help_of({command}), "([0-9]e\\+[0-9]+)"), std::set<std::string>()) << command;
+  }
+  EXPECT_EQ(matches(help_of({"import", "tum"}), "([0-9]e\\+[0-9]+)"), std::set<std::string>());
+}
+
 // The default method is told once by each: a model of the same folder is the same by either.
 TEST(CommandDocument, TellsTheDefaultMethodOfTheHelp) {
   EXPECT_NE(help_of({"reconstruct"}).find("(solid; of a space: intersection)"), std::string::npos);

@@ -120,7 +120,7 @@ void add_import(CLI::App& program, ImportArguments& arguments) {
       .add_option("--max-gap-s", arguments.max_gap,
                   "longest time between two poses to interpolate between (0.1)")
       ->type_name("SECONDS")
-      ->check(CLI::Range(0.0, 1e6));
+      ->check(CLI::Range(0.0, 3600.0));
   command.footer(
       "Poses are interpolated to the time of each depth image; an image without poses near its "
       "time is left out.");

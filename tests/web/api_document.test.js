@@ -3,7 +3,8 @@ import {readFileSync} from 'node:fs';
 import {test} from 'node:test';
 
 const {paths, components} = JSON.parse(readFileSync(`${process.env.OCTURN_SOURCE}/web/openapi.json`, 'utf8'));
-const rows = readFileSync(`${process.env.OCTURN_SOURCE}/web/API.md`, 'utf8').split('\n').filter((line) => /^\| `(GET|POST|PUT|PATCH|DELETE)\b/.test(line));
+const words = readFileSync(`${process.env.OCTURN_SOURCE}/web/API.md`, 'utf8');
+const rows = words.split('\n').filter((line) => /^\| `(GET|POST|PUT|PATCH|DELETE)\b/.test(line));
 
 /** The operations that a row's first cell names: "`POST a`, `b`" names two. @param {string} cell @returns {string[]} */
 function operationsOf(cell) {
@@ -47,6 +48,16 @@ test('the document names the operations of the description, and their answers', 
     Object.keys(item).filter((method) => method !== 'parameters').map((method) => `${method.toUpperCase()} ${path}`));
   const likewise = all.filter((operation) => /builds\/\{number\}\/(Scan\.\{format\}|coarse\.stl)$/.test(operation));
   assert.deepEqual(all.filter((operation) => !named.has(operation)), likewise);
+});
+
+/** The names of all values in a part of the description. @param {any} part @returns {string[]} */
+const valuesOf = (part) => part === null || typeof part !== 'object' ? [] :
+  [...Object.keys(part.properties ?? {}), ...Object.values(part).flatMap(valuesOf)];
+
+test('the document names every value of the description', () => {
+  const values = new Set(valuesOf({paths, components}));
+  assert.ok(values.size > 150);
+  assert.deepEqual([...values].filter((value) => !new RegExp(`["\`]${value}["\`=]`).test(words)), []);
 });
 
 test('the description refuses with codes that there are', () => {

@@ -53,6 +53,7 @@ test('a reason with its values is worded by the page, one without them as the sc
   assert.equal(detailOf({code: 'moved', parameters: {stop: 5, empty_share: 0.123}}), 'At stop 5 12% of what was seen lies where other stops saw empty space.');
   assert.equal(detailOf({code: 'cut-by-box', parameters: {side: 'top', object_side: 2}}), 'Side 2: The object reaches through the top of the scanned space.');
   assert.equal(detailOf({code: 'parts-dropped', parameters: {parts: 3, volume_cm3: 1.26}}), '3 parts, 1.3 cm³ in all, were not joined to the model, and were dropped.');
+  assert.equal(detailOf({code: 'parts-dropped', parameters: {parts: 1, volume_cm3: 1.26}}), '1 part, 1.3 cm³, was not joined to the model, and was dropped.');
   assert.equal(detailOf({code: 'floats'}), 'As it is said.');
   assert.equal(detailOf({code: 'floats', parameters: {depth_furlong: 1}}), 'As it is said.');
 });

@@ -43,7 +43,7 @@ export function reasonText({code, detail, parameters = {}}) {
   if (!isText(`reason.${key}`)) {
     return detail;
   }
-  const words = text(`reason.${key}`, shown(own));
+  const words = text(`reason.${key}`, {...shown(own), count: Number(own.parts ?? 0)});
   return side === undefined ? words : text('reason.of-side', {side, words});
 }
 

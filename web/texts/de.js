@@ -325,7 +325,10 @@ export const texts = {
   'reason.of-side': 'Seite {side}: {words}',
   'reason.optics.size_share': 'Die Optik des Sensors ist nicht wie bekannt, und die Drehung, die sie gemessen hat, wurde verworfen: Maße können um {size_share} falsch sein.',
   'reason.part-missing.length_mm': 'Ein Teil des Objekts, {length_mm} lang, war an mehreren Halten zu sehen und ist nicht im Modell.',
-  'reason.parts-dropped.parts.volume_cm3': '{parts} Teile, zusammen {volume_cm3}, hingen nicht am Modell und wurden weggelassen.',
+  'reason.parts-dropped.parts.volume_cm3': {
+    one: '{parts} Teil, {volume_cm3}, hing nicht am Modell und wurde weggelassen.',
+    other: '{parts} Teile, zusammen {volume_cm3}, hingen nicht am Modell und wurden weggelassen.',
+  },
   'reason.slip.off_deg.stop': 'An Halt {stop} stand der Teller {off_deg} neben seiner Stelle.',
   'reason.still.stops': 'Alle {stops} Halte zeigen dasselbe Bild: Der Teller hat sich nicht gedreht.',
   'reason.stops-disagree.disagreement_mm': 'Zwei Halte sind sich über das Objekt um {disagreement_mm} uneins.',

@@ -336,7 +336,10 @@ export const texts = {
   'reason.of-side': 'Side {side}: {words}',
   'reason.optics.size_share': 'The sensor’s optics are not as known, and the turn that measured them was refused: sizes may be wrong by {size_share}.',
   'reason.part-missing.length_mm': 'A part of the object, {length_mm} long, was seen by several stops and is not in the model.',
-  'reason.parts-dropped.parts.volume_cm3': '{parts} parts, {volume_cm3} in all, were not joined to the model, and were dropped.',
+  'reason.parts-dropped.parts.volume_cm3': {
+    one: '{parts} part, {volume_cm3}, was not joined to the model, and was dropped.',
+    other: '{parts} parts, {volume_cm3} in all, were not joined to the model, and were dropped.',
+  },
   'reason.slip.off_deg.stop': 'At stop {stop} the platform stood {off_deg} from where it should.',
   'reason.still.stops': 'Each of {stops} stops shows what the first one shows: the platform did not turn.',
   'reason.stops-disagree.disagreement_mm': 'Two stops disagree about the object by {disagreement_mm}.',

@@ -325,7 +325,10 @@ export const texts = {
   'reason.of-side': 'Lado {side}: {words}',
   'reason.optics.size_share': 'La óptica del sensor no es la conocida y se rechazó el giro que la midió: las medidas pueden fallar en un {size_share}.',
   'reason.part-missing.length_mm': 'Una parte del objeto, de {length_mm}, se vio en varias paradas y no está en el modelo.',
-  'reason.parts-dropped.parts.volume_cm3': '{parts} piezas, {volume_cm3} en total, no estaban unidas al modelo y se omitieron.',
+  'reason.parts-dropped.parts.volume_cm3': {
+    one: '{parts} pieza, {volume_cm3}, no estaba unida al modelo y se omitió.',
+    other: '{parts} piezas, {volume_cm3} en total, no estaban unidas al modelo y se omitieron.',
+  },
   'reason.slip.off_deg.stop': 'En la parada {stop} el plato estaba a {off_deg} de su sitio.',
   'reason.still.stops': 'Las {stops} paradas muestran la misma imagen: el plato no ha girado.',
   'reason.stops-disagree.disagreement_mm': 'Dos paradas discrepan sobre el objeto en {disagreement_mm}.',

@@ -325,7 +325,10 @@ export const texts = {
   'reason.of-side': 'Côté {side} : {words}',
   'reason.optics.size_share': 'L’optique du capteur n’est pas celle que l’on croyait et le tour qui l’a mesurée a été refusé : les dimensions peuvent être fausses de {size_share}.',
   'reason.part-missing.length_mm': 'Une partie de l’objet, longue de {length_mm}, a été vue par plusieurs arrêts et manque au modèle.',
-  'reason.parts-dropped.parts.volume_cm3': '{parts} pièces, {volume_cm3} en tout, ne tenaient pas au modèle et ont été écartées.',
+  'reason.parts-dropped.parts.volume_cm3': {
+    one: '{parts} pièce, {volume_cm3}, ne tenait pas au modèle et a été écartée.',
+    other: '{parts} pièces, {volume_cm3} en tout, ne tenaient pas au modèle et ont été écartées.',
+  },
   'reason.slip.off_deg.stop': 'À l’arrêt {stop} le plateau était à {off_deg} de sa place.',
   'reason.still.stops': 'Les {stops} arrêts montrent tous la même image : le plateau n’a pas tourné.',
   'reason.stops-disagree.disagreement_mm': 'Deux arrêts diffèrent sur l’objet de {disagreement_mm}.',

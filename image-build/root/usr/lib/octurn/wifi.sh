@@ -1,5 +1,5 @@
 # shellcheck shell=sh
-# Sourced by programs that apply the WiFi of octurn.txt, after octurn_txt.sh and answer.sh.
+# Sourced by programs that apply the WiFi of octurn.txt, after octurn_txt.sh, answer.sh and card.sh.
 
 # shellcheck disable=SC2154
 # One line for each WiFi, newest first: name in hexadecimal, key, and the password in hexadecimal while it may be needed.

@@ -46,10 +46,11 @@ grow() {
   fi
 }
 
-# signature_of DISK: prints its signature. A new card gets one of its own, since Windows takes the second of two alike offline.
+# signature_of DISK MARK: prints its signature. A new card gets one of its own, since Windows takes the second of two alike offline.
+# A card that was updated does not: an older system that comes back would look for the image's.
 signature_of() {
   signature=$(number_at 440 "$1")
-  if [ "$signature" = @signature@ ]; then
+  if [ "$signature" = @signature@ ] && [ -z "$2" ]; then
     signature=$(cat "/sys/block/${1#/dev/}/device/cid" /proc/sys/kernel/random/uuid 2>/dev/null | md5sum | head -c 8)
     little_endian "0x$signature" | dd of="$1" bs=1 seek=440 conv=notrunc,fsync 2>/dev/null
   fi

@@ -92,7 +92,8 @@ test('a new card gets a disk signature of its own, which the next start looks fo
 });
 
 test('a signature that is not named, as after a cut of power, or another one, as Windows writes, is named at the next start', async () => {
-  for (const named of ['00000000', '89abcdef']) {
+  for (const [named, mark] of [['00000000', ''], ['89abcdef', ''], ['89abcdef', 'kept=a 1.2.3\n']]) {
+    await setMark(mark);
     await signWith(0x12345678);
     await nameDisk(named);
     assert.match(await start(), /SYSTEM a of \/dev\/vda/);

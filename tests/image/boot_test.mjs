@@ -1,7 +1,7 @@
 // Boots the image, scans in it, and prints times and memory. Arguments: the machine, the card's folder, and the number of power cuts
 // after that.
 
-import {readFile} from 'node:fs/promises';
+import {open, readFile} from 'node:fs/promises';
 
 import {measure} from '../web/mesh_file.js';
 import {patience as patienceOfVirt, require, runTest, until} from './checks.mjs';
@@ -14,6 +14,8 @@ const patience = machine === 'virt' ? patienceOfVirt : 900;
 
 // IEEE 802.11's example of a password and the key made of it, annex J.4.1
 const wifi = {password: 'password', key: 'f42c6fc52df0ebef9ebb4b90b38a5f902e83fe1b135a70e23aed762e9710a12e'};
+
+const imagesSignature = '4f637475';  // of layout.sh
 
 const say = (text) => console.log(`boot-test: ${text}`);
 
@@ -82,6 +84,16 @@ async function testKept(guest) {
 /** Waits for a file on the card, which appears only when it is complete. */
 const cardHas = (name) => until(`${name} on the card`, () => readCard(card, name).catch(() => ''), patience);
 
+/** @returns {Promise<Buffer>} the first bytes of a file */
+async function readFirst(name, length) {
+  const file = await open(name);
+  try {
+    return (await file.read({buffer: Buffer.alloc(length), position: 0})).buffer;
+  } finally {
+    await file.close();
+  }
+}
+
 /** Checks the files that the scanner's owner sees on the card in another computer. */
 async function testCard(version) {
   const settings = await readCard(card, 'octurn.txt');
@@ -91,7 +103,11 @@ async function testCard(version) {
   for (const line of ['The page: http://boot-test.local', 'http://10.0.2.15', `Octurn ${version}`, 'there is no setting colour']) {
     require(status.includes(line), `octurn-status.txt lacks "${line}":\n${status}`);
   }
-  say('on the card: octurn.txt without the password, octurn-status.txt with address and the wrong line');
+  const signature = (await readFirst(`${card}/card.img`, 444)).readUInt32LE(440).toString(16).padStart(8, '0');
+  const line = await readCard(card, 'a/cmdline.txt');
+  require(signature !== imagesSignature && line.startsWith(`octurn.disk=${signature} `),
+    `the card's signature is ${signature}, and the kernel's command line is ${line}`);
+  say('on the card: octurn.txt without the password, octurn-status.txt with address and the wrong line, a signature of its own');
 }
 
 async function test(guest) {

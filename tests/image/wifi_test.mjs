@@ -148,7 +148,7 @@ async function testWifi(guest) {
   await request(guest, 'Museum', 'guided tour');
   await reaches(guest, 'joined', 'Museum');
   await address(guest, 'wlan0', '192.168.78');
-  const key = await guest.run('wpa_cli -i wlan0 status | grep ^key_mgmt');
+  const key = await guest.run('wpa_cli -s /run -i wlan0 status | grep ^key_mgmt');
   require(key === 'key_mgmt=SAE', `the scanner has joined with ${key}`);
   require(await keptPasswords(guest) !== '', 'WPA3 needs the password again at the next start');
   say('a router with WPA3 alone is joined');

@@ -41,7 +41,7 @@ for (const [locale, link, title] of [['de-DE', 'Hilfe', 'Von der Karte zum Model
     assert.match(page.url(), /#5-scan$/);
     assert.deepEqual(await complaints(page), []);
     assert.ok(await overflow(page) <= 0, `${await overflow(page)} pixels too wide`);
-    await picture(page, `help-guide-${locale}`);
+    await picture(page, `help-guide-${locale}`, {fullPage: false});
     await page.getByRole('link', {name: 'English'}).click({timeout: 20000});
     await page.getByRole('heading', {name: 'From a card to a model'}).waitFor({timeout: 20000});
     assert.deepEqual(faults, []);

@@ -1,7 +1,7 @@
 // Renders the scanner's help from the documents in docs: render_help.js DOCS_FOLDER OUTPUT_FOLDER FILE.md...
-// Runs when the page is built. Links between these files stay links; a link to another file of the repository, which the scanner does
-// not serve, is replaced by its text. NAME.LANGUAGE.md is a translation of NAME.md, with the same headings in the same order and
-// with the anchors of the original.
+// Runs when the page is built. Links between these files stay links; a link to another file of the repository, which
+// the scanner does not serve, is replaced by its text. NAME.LANGUAGE.md is a translation of NAME.md, with the same
+// headings in the same order, which get the anchors of the original.
 
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {basename, join} from 'node:path';

@@ -62,7 +62,7 @@ test('the live picture is analysed beside the page, and not by it', async (t) =>
   assert.deepEqual(faults, []);
 });
 
-test('with the live picture on, a processor four times as slow has time left, and no task that keeps the page from answering',
+test('with the live picture on, a processor four times as slow has time left, and no task delays an answer',
     async (t) => {
       const {browser, page, faults} = await openForm(t);
       const session = await page.context().newCDPSession(page);

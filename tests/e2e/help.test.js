@@ -31,8 +31,11 @@ for (const [screen, colorScheme] of [['phone', 'light'], ['desktop', 'dark']]) {
   });
 }
 
-for (const [locale, link, title] of [['de-DE', 'Hilfe', 'Von der Karte zum Modell'], ['es-ES', 'Ayuda', 'De la tarjeta al modelo'],
-  ['fr-FR', 'Aide', 'De la carte au modèle']]) {
+for (const [locale, link, title] of [
+  ['de-DE', 'Hilfe', 'Von der Karte zum Modell'],
+  ['es-ES', 'Ayuda', 'De la tarjeta al modelo'],
+  ['fr-FR', 'Aide', 'De la carte au modèle'],
+]) {
   test(`the page leads to the guide in its language, ${locale}`, async (t) => {
     const scanner = await startScanner(t);
     const {page, faults} = await openPage(await openBrowser(t), scanner.url, {screen: 'phone', locale});

@@ -153,7 +153,8 @@ async function views(page) {
   }
   assert.ok([...counts.values()].filter((count) => count > 20).length >= 4, `${[...counts]}`);
   assert.ok(!clay.equals(await page.locator('#view').screenshot()), 'it is painted');
-  for (const [name, size] of Object.entries({phone: screens.phone, desktop: screens.desktop, landscape: shortScreens.landscape})) {
+  const {phone, desktop} = screens;
+  for (const [name, size] of Object.entries({phone, desktop, landscape: shortScreens.landscape})) {
     await resize(page, size);
     assert.equal(await hiddenPart(page, 'legend'), '', name);
     await picture(page, `views-${name}`, {fullPage: false});

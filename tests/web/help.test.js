@@ -46,7 +46,7 @@ test('the links of the page into the help are right', () => {
   }
 });
 
-/** The parts of a document that a translation has, too: headings with their anchors, steps, tables, code, places that links lead to. */
+/** The parts of a document that its translation has, too: headings and their anchors, steps, tables, code, links. */
 const skeletonOf = (html) => {
   const main = html.slice(html.indexOf('<main>'), html.indexOf('</main>'));
   return {
@@ -57,10 +57,11 @@ const skeletonOf = (html) => {
 };
 
 /** The page's own words in the guide, which are set in bold or italics. */
-const marked = (html) => [...html.matchAll(/<(strong|em)>([^<]*)<\/\1>/g)].map(([, , words]) => words.replace(/\s+/g, ' '));
+const marked = (html) => [...html.matchAll(/<(strong|em)>([^<]*)<\/\1>/g)]
+    .map(([, , words]) => words.replace(/\s+/g, ' '));
 
 for (const language of Object.keys(languages).filter((one) => one !== 'en')) {
-  test(`the guide in ${languages[language]} has every step, link and command of the English one, and the page's words`, async () => {
+  test(`the guide in ${languages[language]} has every step, link and command, and the page's words`, async () => {
     const [original, guide] = [texts.get('guide.html'), texts.get(`guide.${language}.html`)];
     assert.ok(guide.includes(`<html lang="${language}">`));
     const [all, own] = [original, guide].map(skeletonOf);
@@ -68,11 +69,13 @@ for (const language of Object.keys(languages).filter((one) => one !== 'en')) {
     assert.deepEqual(own, all);
     const [english, translated] = await Promise.all(['en', language].map((one) => import(`../../web/texts/${one}.js`)));
     const keys = Object.keys(english.texts);
-    const used = marked(original).map((words) => keys.filter((key) => english.texts[key] === words)).filter(({length}) => length > 0);
+    const used = marked(original).map((words) => keys.filter((key) => english.texts[key] === words))
+        .filter(({length}) => length > 0);
     assert.ok(used.length > 20, `${used.length} words of the page`);
     for (const names of used) {
       const words = names.map((key) => translated.texts[key]);
-      assert.ok(words.some((word) => guide.replace(/\s+/g, ' ').includes(word)), `${english.texts[names[0]]}: ${words}`);
+      const isThere = words.some((word) => guide.replace(/\s+/g, ' ').includes(word));
+      assert.ok(isThere, `${english.texts[names[0]]}: ${words}`);
     }
   });
 }

@@ -107,7 +107,10 @@ export function translated(sentence) {
 
 const attributes = {'data-text-label': 'aria-label', 'data-text-title': 'title', 'data-text-placeholder': 'placeholder'};
 
-/** Fills in the texts that HTML names by data-text attributes, and leads links to the guide to that in the language. @param {ParentNode} root */
+/**
+ * Fills in the texts that HTML names by data-text attributes. Links to the guide lead to that in the language.
+ * @param {ParentNode} root
+ */
 export function fillTexts(root) {
   for (const template of root.querySelectorAll('template')) {
     fillTexts(template.content);

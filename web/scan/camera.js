@@ -52,7 +52,10 @@ function rigNow() {
 /** @type {Worker | undefined} */
 let reader;
 
-/** Reads a picture where workers have no canvas: in Safari before 16.4. @param {Request} request @returns {Promise<Reading>} */
+/**
+ * Reads a picture where workers have no canvas: in Safari before 16.4.
+ * @param {Request} request @returns {Promise<Reading>}
+ */
 async function readHere(request) {
   const {readPicture} = await import('../sensor/live_reader.js');
   const {width, height} = request;

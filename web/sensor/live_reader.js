@@ -1,4 +1,4 @@
-// Reads the live pictures. On a phone that would keep the page from answering, so that a worker does it (live_worker.js),
+// Reads the live pictures. On a phone that would keep the page from answering, so a worker does it (live_worker.js),
 // except in browsers whose workers have no canvas.
 
 import {brighten, brightnessOf, colour, decoded} from './depth_picture.js';

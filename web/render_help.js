@@ -1,6 +1,7 @@
 // Renders the scanner's help from the documents in docs: render_help.js DOCS_FOLDER OUTPUT_FOLDER FILE.md...
-// Runs when the page is built. Links between these files stay links; a link to another file of the repository, which the scanner does
-// not serve, is replaced by its text.
+// Runs when the page is built. Links between these files stay links; a link to another file of the repository, which
+// the scanner does not serve, is replaced by its text. NAME.LANGUAGE.md is a translation of NAME.md, with the same
+// headings in the same order, which get the anchors of the original.
 
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
 import {basename, join} from 'node:path';
@@ -8,6 +9,16 @@ import {Marked} from 'marked';
 
 const [docs, output, ...files] = process.argv.slice(2);
 const names = files.map((file) => basename(file, '.md').toLowerCase());
+
+/** Words of the frame around a document. @type {Record<string, {name: string, back: string, help: string}>} */
+const frames = {
+  en: {name: 'English', back: 'Back to the scanner', help: 'Help'},
+  de: {name: 'Deutsch', back: 'Zurück zum Scanner', help: 'Hilfe'},
+  es: {name: 'Español', back: 'Volver al escáner', help: 'Ayuda'},
+  fr: {name: 'Français', back: 'Retour au scanner', help: 'Aide'},
+};
+/** @param {string} name @returns {[string, string]} the document and the language */
+const partsOf = (name) => /** @type {[string, string]} */ ([...name.split('.'), 'en'].slice(0, 2));
 
 /** The anchor of a heading as on GitHub, so that links into a document work in both places. @param {string} heading */
 const anchorOf = (heading) => heading.toLowerCase().replace(/<[^>]*>/g, '').replace(/[^\p{L}\p{N}\- ]/gu, '').replaceAll(' ', '-');
@@ -48,12 +59,54 @@ const scrolling = (html) => html
 const titleOf = (/** @type {string} */ text) => /^# (.*)$/m.exec(text)?.[1].replaceAll('`', '') ?? '';
 const texts = files.map((file) => readFileSync(join(docs, file), 'utf8'));
 
+/** The originals' anchors by document, as they are rendered first. @type {Map<string, string[]>} */
+const anchors = new Map();
+
+/** A document as HTML. @param {string} name @param {string} text */
+function rendered(name, text) {
+  const [document, language] = partsOf(name);
+  const html = /** @type {string} */ (marked.parse(text));
+  const heading = /(<h\d id=")([^"]*)/g;
+  if (language === 'en') {
+    anchors.set(document, [...html.matchAll(heading)].map(([, , anchor]) => anchor));
+    return html;
+  }
+  const left = [...anchors.get(document) ?? []];
+  const translated = html.replace(heading, (_, start) => start + (left.shift() ?? 'missing'));
+  if (left.length > 0 || translated.includes('id="missing"')) {
+    throw new Error(`${name} has other headings than ${document}`);
+  }
+  return translated;
+}
+
+/** Links to a document in its languages; nothing if it has one. @param {string} name */
+function languageLinks(name) {
+  const [document] = partsOf(name);
+  const links = names.filter((other) => partsOf(other)[0] === document).map((other) => {
+    const [, language] = partsOf(other);
+    const current = other === name ? ' aria-current="page"' : '';
+    return `<a href="${other}.html" lang="${language}" hreflang="${language}"${current}>${frames[language].name}</a>`;
+  });
+  return links.length > 1 ? `\n    <p class="languages">${links.join(' · ')}</p>` : '';
+}
+
+/** The list of all documents, in the reader's language where there is one. @param {string} name */
+function documentLinks(name) {
+  const [, language] = partsOf(name);
+  return names.filter((other) => partsOf(other)[1] === 'en').map((other) => {
+    const own = names.includes(`${other}.${language}`) ? `${other}.${language}` : other;
+    const foreign = partsOf(own)[1] === language ? '' : ` lang="${partsOf(own)[1]}"`;
+    const current = own === name ? ' aria-current="page"' : '';
+    return `<li><a href="${own}.html"${foreign}${current}>${titleOf(texts[names.indexOf(own)])}</a></li>`;
+  }).join('\n      ');
+}
+
 mkdirSync(output, {recursive: true});
 texts.forEach((text, index) => {
-  const links = texts.map((other, at) =>
-    `<li><a href="${names[at]}.html"${at === index ? ' aria-current="page"' : ''}>${titleOf(other)}</a></li>`).join('\n      ');
+  const [, language] = partsOf(names[index]);
+  const {back, help} = frames[language];
   writeFileSync(join(output, `${names[index]}.html`), `<!doctype html>
-<html lang="en">
+<html lang="${language}">
 <head>
   <meta charset="utf-8">
   <meta name="viewport" content="width=device-width, initial-scale=1, viewport-fit=cover">
@@ -65,14 +118,14 @@ texts.forEach((text, index) => {
   <link rel="stylesheet" href="../help.css">
 </head>
 <body class="help">
-  <nav aria-label="Help">
-    <p><a href="../">Back to the scanner</a></p>
+  <nav aria-label="${help}">
+    <p><a href="../">${back}</a></p>${languageLinks(names[index])}
     <ul>
-      ${links}
+      ${documentLinks(names[index])}
     </ul>
   </nav>
   <main>
-${scrolling(/** @type {string} */ (marked.parse(text)))}
+${scrolling(rendered(names[index], text))}
   </main>
 </body>
 </html>

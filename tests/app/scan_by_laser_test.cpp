@@ -84,10 +84,11 @@ TEST_F(ScanByLaser, HasThePicturesAndTheModelInColour) {
   EXPECT_TRUE(store_.get(job.id).builds.have_colours);
   EXPECT_TRUE(has_colours(store_.folder(job.id), read_scan(store_.folder(job.id))));
 
-  ASSERT_TRUE(scanner.colour_model(job, 0));
+  ASSERT_TRUE(scanner.colour_model(job, 0, Colours::pictures));
   const fs::path model = store_.model_file(job.id);
-  const std::vector<Rgb> colours = read_colours(model);
+  const std::vector<Rgb> colours = read_colours(model, Colours::pictures);
   EXPECT_EQ(colours.size(), VertexTable(FacetFile(model)).vertices().size());
+  EXPECT_EQ(code_thrown_by([&] { scanner.colour_model(job, 0, Colours::views); }), "bad-settings");
 }
 
 TEST_F(ScanByLaser, RefusesColoursThatTakeMoreMemoryThanIsAllowed) {
@@ -96,13 +97,13 @@ TEST_F(ScanByLaser, RefusesColoursThatTakeMoreMemoryThanIsAllowed) {
   const Job job = ended(scanner);
   const fs::path model = store_.model_file(job.id);
   const auto colour = [&](std::size_t limit) {
-    colour_model(model, scan_of_model(store_, job, 0), limit, {});
+    colour_model(model, scan_of_model(store_, job, 0), Colours::pictures, limit, {});
   };
 
   EXPECT_EQ(code_thrown_by([&] { colour(1 << 20U); }), "memory-limit");
-  EXPECT_FALSE(fs::exists(colours_file(model)));
+  EXPECT_FALSE(fs::exists(colours_file(model, Colours::pictures)));
   colour(64 << 20U);
-  EXPECT_TRUE(fs::exists(colours_file(model)));
+  EXPECT_TRUE(fs::exists(colours_file(model, Colours::pictures)));
 }
 
 TEST_F(ScanByLaser, EndsColoursWhenItIsStopped) {
@@ -113,8 +114,10 @@ TEST_F(ScanByLaser, EndsColoursWhenItIsStopped) {
   stop.request_stop();
   const fs::path model = store_.model_file(job.id);
 
-  EXPECT_THROW(colour_model(model, scan_of_model(store_, job, 0), 0, stop.get_token()), Stopped);
-  EXPECT_FALSE(fs::exists(colours_file(model)));
+  EXPECT_THROW(
+      colour_model(model, scan_of_model(store_, job, 0), Colours::pictures, 0, stop.get_token()),
+      Stopped);
+  EXPECT_FALSE(fs::exists(colours_file(model, Colours::pictures)));
 }
 
 TEST_F(ScanByLaser, HasALaserOnForItsOwnPictureAlone) {

@@ -2,12 +2,17 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "app/few_snapshots.hpp"
+#include "mesh/facet_file.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/stl.hpp"
 #include "octurn/units.hpp"
 #include "rig/misaligned_pose.hpp"
 #include "run/run_scan.hpp"
@@ -44,6 +49,14 @@ class ScanCalibrationTest : public ::testing::Test {
                 phases.push_back(phase);
               }
             },
+        .on_added =
+            [&](const Reconstructor& reconstruction, int snapshots) {
+              previews_[snapshots].clear();
+              reconstruction.preview(0.004, 20'000, [&](std::span<const Facet> facets) {
+                previews_[snapshots].insert(previews_[snapshots].end(), facets.begin(),
+                                            facets.end());
+              });
+            },
         .on_calibrated = [&](const ScanSolution& solution) { report_ = solution.report; },
         .on_rebuilt = [&](int snapshots) { rebuilt_.push_back(snapshots); }};
     report_.reset();
@@ -65,7 +78,29 @@ class ScanCalibrationTest : public ::testing::Test {
   TemporaryFolder folder_;
   std::optional<CalibrationReport> report_;
   std::vector<int> rebuilt_;
+  std::map<int, std::vector<Facet>> previews_;  // by the number of snapshots
 };
+
+/// The share of a model's corners that have one of a preview within two of its leaves.
+double shown_share(const fs::path& model, const std::vector<Facet>& preview) {
+  constexpr float near_mm = 8;
+  int all = 0;
+  int shown = 0;
+  FacetFile(model).read([&](std::span<const Facet> facets) {
+    for (const Facet& facet : facets) {
+      const Eigen::Vector3f corner(facet.corners[0].data());
+      ++all;
+      shown += std::ranges::any_of(
+                   preview,
+                   [&](const Facet& seen) {
+                     return (Eigen::Vector3f(seen.corners[0].data()) - corner).norm() < near_mm;
+                   })
+                   ? 1
+                   : 0;
+    }
+  });
+  return static_cast<double>(shown) / all;
+}
 
 TEST_F(ScanCalibrationTest, BuildsTheModelAgainWhereTheToldPoseIsWrong) {
   const ScanSettings settings = told(wrong_pose());
@@ -116,6 +151,12 @@ TEST_F(ScanCalibrationTest, KeepsTheToldPoseWhereTheSolvedOneIsRefused) {
   EXPECT_FALSE(report_->accepted);
   EXPECT_NE(report_->reason.find("too few stops"), std::string::npos) << report_->reason;
   EXPECT_FALSE(read_scan(folder_.path()).solved);
+}
+
+TEST_F(ScanCalibrationTest, ShowsAPreviewOfTheWholeObjectWhereTheToldPoseIsWrong) {
+  scan(told(wrong_pose()), folder_.path());
+  ASSERT_FALSE(previews_[11].empty());
+  EXPECT_GT(shown_share(folder_.path() / "Scan.stl", previews_[11]), 0.95);
 }
 
 TEST_F(ScanCalibrationTest, CountsTheSnapshotsThatItBuildsAgain) {

@@ -20,10 +20,15 @@ export async function complaints(page, options = {}) {
   return violations.map(({id, nodes}) => `${id}: ${nodes.map(({target}) => target).join(', ')}`);
 }
 
-/** The texts with too little contrast in the other colour scheme. @param {'light' | 'dark'} usual  the scheme to restore */
-async function faintInOther(page, usual) {
-  await page.emulateMedia({colorScheme: usual === 'dark' ? 'light' : 'dark'});
+/**
+ * The texts with too little contrast in the other colour scheme, of which it stores a picture.
+ * @param {string} name  of the picture @param {'light' | 'dark'} usual  the scheme to restore
+ */
+async function faintInOther(page, name, usual) {
+  const other = usual === 'dark' ? 'light' : 'dark';
+  await page.emulateMedia({colorScheme: other});
   const found = await complaints(page, {runOnly: ['color-contrast']});
+  await picture(page, `${name}-${other}`);
   await page.emulateMedia({colorScheme: usual});
   return found;
 }
@@ -87,7 +92,7 @@ export async function walk(browser, url, states, screen, colorScheme) {
   for (const [name, reach] of Object.entries(states)) {
     await reach(page);
     assert.deepEqual(await complaints(page), [], name);
-    assert.deepEqual(await faintInOther(page, colorScheme), [], `${name}, not ${colorScheme}`);
+    assert.deepEqual(await faintInOther(page, `${name}-${screen}`, colorScheme), [], `${name}, not ${colorScheme}`);
     assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
     await picture(page, `${name}-${screen}-${colorScheme}`);
     await lookInForcedColours(page, `${name}-${screen}`);

@@ -34,6 +34,9 @@ const statesOf = (scanner, finished) => ({
     await page.goto(`${new URL('/', page.url())}#${finished.id}`);
     await page.locator('#tools').waitFor();
     assert.equal(await page.locator('#view').evaluate((view) => getComputedStyle(view).touchAction), 'pan-y', 'a finger on it can scroll');
+    // The Scanner's styles have come, too.
+    const wide = (id) => page.locator(id).evaluate((element) => element.getBoundingClientRect().width);
+    assert.ok(await wide('#reasons') > 0.9 * await wide('#verdict'), 'reasons take the width of the panel');
   },
   renaming: (page) => page.getByRole('button', {name: 'Rename this scan'}).click(),
   scanning: async (page) => {

@@ -106,11 +106,12 @@ export async function chooseQuickScan(page, snapshots) {
   await page.getByLabel('Depth filter').selectOption('basic');
 }
 
-/** Stores a screenshot of the page, or of what its window shows, if the environment asks for screenshots. */
+/** Stores a screenshot of the page, or of what its window shows. */
 export async function picture(page, name, {fullPage = true} = {}) {
   const where = process.env.OCTURN_PICTURES;
-  if (where) {
-    await mkdir(where, {recursive: true});
-    await page.screenshot({path: join(where, `${name}.png`), fullPage});
+  if (!where) {
+    throw new Error('OCTURN_PICTURES must be a folder for pictures');
   }
+  await mkdir(where, {recursive: true});
+  await page.screenshot({path: join(where, `${name}.png`), fullPage});
 }

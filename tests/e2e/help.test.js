@@ -30,3 +30,23 @@ for (const [screen, colorScheme] of [['phone', 'light'], ['desktop', 'dark']]) {
     assert.deepEqual(faults, []);
   });
 }
+
+for (const [locale, link, title] of [
+  ['de-DE', 'Hilfe', 'Von der Karte zum Modell'],
+  ['es-ES', 'Ayuda', 'De la tarjeta al modelo'],
+  ['fr-FR', 'Aide', 'De la carte au modèle'],
+]) {
+  test(`the page leads to the guide in its language, ${locale}`, async (t) => {
+    const scanner = await startScanner(t);
+    const {page, faults} = await openPage(await openBrowser(t), scanner.url, {screen: 'phone', locale});
+    await page.getByRole('link', {name: link, exact: true}).click({timeout: 20000});
+    await page.getByRole('heading', {name: title}).waitFor({timeout: 20000});
+    assert.match(page.url(), /#5-scan$/);
+    assert.deepEqual(await complaints(page), []);
+    assert.ok(await overflow(page) <= 0, `${await overflow(page)} pixels too wide`);
+    await picture(page, `help-guide-${locale}`, {fullPage: false});
+    await page.getByRole('link', {name: 'English'}).click({timeout: 20000});
+    await page.getByRole('heading', {name: 'From a card to a model'}).waitFor({timeout: 20000});
+    assert.deepEqual(faults, []);
+  });
+}

@@ -41,3 +41,15 @@ for (const screen of ['desktop', 'phone']) {
     assert.deepEqual(faults, []);
   });
 }
+
+test('a browser whose workers have no canvas, such as Safari 16.0, reads the live picture itself', async (t) => {
+  const scanner = await startScanner(t);
+  const {page, faults} = await openPage(await openBrowser(t), scanner.url);
+  await page.addInitScript(() => delete globalThis.OffscreenCanvas);
+  await page.reload();
+  await waitForHint(page, 'good');
+  const share = await colouredShare(page);
+  assert.ok(share > 0.01 && share < 0.4, `the object in colour and the rest grey, not ${share}`);
+  assert.equal(page.workers().length, 0);
+  assert.deepEqual(faults, []);
+});

@@ -45,6 +45,9 @@ test('earlier scans are listed, looked at, renamed and deleted', async (t) => {
   await goTo(page, 'Library');
   await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
   await page.waitForFunction(() => document.querySelectorAll('#rows > li').length === 1);
+  const [box, words] = await Promise.all(['#deleted', '#deleted-text'].map((part) => page.locator(part).boundingBox()));
+  const off = words.y + words.height / 2 - box.y - box.height / 2;
+  assert.ok(Math.abs(off) <= 1, `the message is in the middle of its box, not ${off} pixels below it`);
   await page.getByRole('status').getByRole('button', {name: 'Undo'}).click();
   await rows.nth(1).getByText('Möwe <b>1</b>').waitFor();
   await rows.nth(1).locator('.scan-name').click();

@@ -115,6 +115,8 @@ async function result(page) {
     for (const id of ['verdict', 'download']) {
       assert.equal(await hiddenPart(page, id), '', name);
     }
+    const tools = await page.locator('#tools').evaluate((group) => group.clientHeight);
+    assert.ok(tools < 60, `the tools are one row, not ${tools} pixels high: ${name}`);
     const inSight = await pictureInSight(page);
     assert.ok(inSight > await sizeOf(page) - 1 && inSight > 200, `the whole picture, not ${inSight} pixels of it: ${name}`);
     assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
@@ -128,6 +130,38 @@ async function result(page) {
   await page.evaluate(() => scrollTo(0, document.body.scrollHeight));
   assert.ok(await pictureInSight(page) > 300, 'the picture stays beside what is scrolled');
   assert.deepEqual(await complaints(page), []);
+}
+
+/** The model in the colours of the legend: by how many snapshots each place was seen. */
+async function views(page) {
+  const button = page.getByRole('button', {name: 'Show by how many snapshots each place was seen'});
+  await resize(page, screens.desktop);
+  const clay = await page.locator('#view').screenshot();
+  const answer = page.waitForResponse(/Scan\.ply\?colour=views/);
+  await button.click();
+  const ply = await (await answer).body();
+  await page.locator('#legend').waitFor();
+  await page.locator('#measured').waitFor({state: 'hidden'});
+  const legend = await page.locator('#legend li').evaluateAll((items) =>
+    items.map((item) => getComputedStyle(item, '::before').backgroundColor));
+  const first = ply.indexOf('end_header\n') + 'end_header\n'.length;
+  const counts = new Map(legend.map((colour) => [colour, 0]));
+  for (let vertex = 0; vertex < Number(/element vertex (\d+)/.exec(ply.toString('latin1', 0, first))[1]); ++vertex) {
+    const colour = `rgb(${[...ply.subarray(first + 15 * vertex + 12, first + 15 * vertex + 15)].join(', ')})`;
+    assert.ok(counts.has(colour), `${colour} is not in the legend: ${legend}`);
+    counts.set(colour, counts.get(colour) + 1);
+  }
+  assert.ok([...counts.values()].filter((count) => count > 20).length >= 4, `${[...counts]}`);
+  assert.ok(!clay.equals(await page.locator('#view').screenshot()), 'it is painted');
+  const {phone, desktop} = screens;
+  for (const [name, size] of Object.entries({phone, desktop, landscape: shortScreens.landscape})) {
+    await resize(page, size);
+    assert.equal(await hiddenPart(page, 'legend'), '', name);
+    await picture(page, `views-${name}`, {fullPage: false});
+  }
+  assert.deepEqual(await complaints(page), []);
+  await button.click();
+  await page.locator('#legend').waitFor({state: 'hidden'});
 }
 
 /** All texts grow with the browser's font size, and nothing is cut off by that. */
@@ -252,6 +286,7 @@ test('what matters is in sight on every screen', async (t) => {
   await t.test('the end of a scan, on its tab', () => seeEnd(hidden));
   const opened = await openPage(browser, `${scanner.url}#${id}`);
   await t.test('model, verdict and Download at the end of a scan', () => result(opened.page));
+  await t.test('the model by how many snapshots saw each place', () => views(opened.page));
   await t.test('all of it in large letters', () => largeLetters(opened.page, 'result'));
   assert.deepEqual(opened.faults, []);
   await opened.page.context().close();

@@ -4,6 +4,8 @@ import {dirname, join, resolve} from 'node:path';
 import {test} from 'node:test';
 import {fileURLToPath} from 'node:url';
 
+import {languages} from '../../web/base/texts.js';
+
 const page = resolve(dirname(fileURLToPath(import.meta.url)), '../../web');
 const folder = join(page, 'help');
 const texts = new Map(readdirSync(folder).filter((file) => file.endsWith('.html'))
@@ -14,8 +16,10 @@ test('the guide and what it leads to are there, each with a title and in the lis
   for (const [file, text] of texts) {
     assert.match(text, /<title>[^<]+ · Octurn<\/title>/, file);
     assert.equal([...text.matchAll(/<h1 /g)].length, 1, file);
-    for (const other of texts.keys()) {
-      assert.ok(text.includes(`<li><a href="${other}"`), `${file} lists ${other}`);
+    const language = /<html lang="(..)">/.exec(text)[1];
+    for (const other of [...texts.keys()].filter((name) => !/\.\w\w\.html$/.test(name))) {
+      const own = other.replace('.html', `.${language}.html`);
+      assert.ok(text.includes(`<li><a href="${texts.has(own) ? own : other}"`), `${file} lists ${other}`);
     }
   }
 });
@@ -41,6 +45,40 @@ test('the links of the page into the help are right', () => {
     }
   }
 });
+
+/** The parts of a document that its translation has, too: headings and their anchors, steps, tables, code, links. */
+const skeletonOf = (html) => {
+  const main = html.slice(html.indexOf('<main>'), html.indexOf('</main>'));
+  return {
+    tags: [...main.matchAll(/<(h\d id="[^"]*"|ol|ul|li|table|tr|t[hd]|pre|blockquote|p)\b/g)].map(([, tag]) => tag),
+    links: [...main.matchAll(/href="([^"]*)"/g)].map(([, address]) => address),
+    code: [...main.matchAll(/<code>([^<]*)<\/code>/g)].map(([, code]) => code).filter((code) => !/[= ]/.test(code)),
+  };
+};
+
+/** The page's own words in the guide, which are set in bold or italics. */
+const marked = (html) => [...html.matchAll(/<(strong|em)>([^<]*)<\/\1>/g)]
+    .map(([, , words]) => words.replace(/\s+/g, ' '));
+
+for (const language of Object.keys(languages).filter((one) => one !== 'en')) {
+  test(`the guide in ${languages[language]} has every step, link and command, and the page's words`, async () => {
+    const [original, guide] = [texts.get('guide.html'), texts.get(`guide.${language}.html`)];
+    assert.ok(guide.includes(`<html lang="${language}">`));
+    const [all, own] = [original, guide].map(skeletonOf);
+    assert.ok(all.tags.length > 100 && all.links.length > 5 && all.code.length > 20);
+    assert.deepEqual(own, all);
+    const [english, translated] = await Promise.all(['en', language].map((one) => import(`../../web/texts/${one}.js`)));
+    const keys = Object.keys(english.texts);
+    const used = marked(original).map((words) => keys.filter((key) => english.texts[key] === words))
+        .filter(({length}) => length > 0);
+    assert.ok(used.length > 20, `${used.length} words of the page`);
+    for (const names of used) {
+      const words = names.map((key) => translated.texts[key]);
+      const isThere = words.some((word) => guide.replace(/\s+/g, ' ').includes(word));
+      assert.ok(isThere, `${english.texts[names[0]]}: ${words}`);
+    }
+  });
+}
 
 test('the wiring tells where the sensor stands, in the numbers of the settings: the check sends people there', () => {
   const [told] = [...texts.get('settings.html').matchAll(/([\d.]+) m before the axis, ([\d.]+) m up, (\d+) degrees down/g)];

@@ -107,13 +107,19 @@ export function translated(sentence) {
 
 const attributes = {'data-text-label': 'aria-label', 'data-text-title': 'title', 'data-text-placeholder': 'placeholder'};
 
-/** Fills in the texts that HTML names by data-text attributes. @param {ParentNode} root */
+/**
+ * Fills in the texts that HTML names by data-text attributes. Links to the guide lead to that in the language.
+ * @param {ParentNode} root
+ */
 export function fillTexts(root) {
   for (const template of root.querySelectorAll('template')) {
     fillTexts(template.content);
   }
   for (const element of root.querySelectorAll('[data-text]')) {
     element.textContent = text(element.getAttribute('data-text') ?? '');
+  }
+  for (const link of language === 'en' ? [] : root.querySelectorAll('a[href^="help/guide.html"]')) {
+    link.setAttribute('href', (link.getAttribute('href') ?? '').replace('guide.', `guide.${language}.`));
   }
   for (const [name, attribute] of Object.entries(attributes)) {
     for (const element of root.querySelectorAll(`[${name}]`)) {

@@ -1,7 +1,7 @@
 // The colours of a model, in the order of its STL: three corners for each triangle.
 
 import * as api from '../api/api.js';
-import {element, pressed} from '../base/dom.js';
+import {element, pressed, show} from '../base/dom.js';
 import {sentence} from '../base/format.js';
 import {text} from '../base/texts.js';
 
@@ -34,38 +34,51 @@ export function readColours(file) {
   return colours;
 }
 
-/** @param {string} url  of a model's STL @returns {Promise<Uint8Array>} as from `readColours` */
-async function fetchColours(url) {
-  const stream = await api.model(url.replace(/stl$/, 'ply?colour=true'), new AbortController().signal);
+/**
+ * What colours show: the object's own, or how many snapshots saw each place. Also the id of its button.
+ * @typedef {'colours' | 'views'} Paint
+ */
+
+/** @param {string} url  of a model's STL @param {Paint} paint @returns {Promise<Uint8Array>} as from `readColours` */
+async function fetchColours(url, paint) {
+  const query = paint === 'views' ? 'views' : 'true';
+  const stream = await api.model(url.replace(/stl$/, `ply?colour=${query}`), new AbortController().signal);
   return readColours(await new Response(stream).arrayBuffer());
 }
 
-const isPressed = () => element('colours').getAttribute('aria-pressed') === 'true';
+/** @param {Paint} paint */
+const isPressed = (paint) => element(paint).getAttribute('aria-pressed') === 'true';
+
+/** @param {Paint} paint @param {boolean} isShown */
+function press(paint, isShown) {
+  pressed(paint, isShown);
+  show(element('legend'), isShown && paint === 'views');
+}
 
 /**
  * Shows or hides the model's colours.
  * @param {Object} shown
  * @param {() => import('./viewer.js').Viewer | undefined} shown.viewer
- * @param {() => string | null} shown.url  the STL of the shown model, if it has colours
+ * @param {() => {url: string | null, paint: Paint}} shown.painted  the STL of the shown model
  * @param {(words: string) => void} shown.say
  */
-export async function toggleColours({viewer, url, say}) {
-  const of = url();
-  pressed('colours', !isPressed());
-  if (!isPressed() || of === null) {
+export async function togglePaint({viewer, painted, say}) {
+  const {url, paint} = painted();
+  press(paint, !isPressed(paint));
+  if (!isPressed(paint) || url === null) {
     viewer()?.paint(null);
     return;
   }
   say(text('view.loading'));
   try {
-    const colours = await fetchColours(of);
-    if (url() === of && isPressed()) {  // unless another model is shown by now
+    const colours = await fetchColours(url, paint);
+    if (painted().url === url && isPressed(paint)) {  // unless another model is shown by now
       viewer()?.paint(colours);
     }
     say('');
   } catch (error) {
-    const isStill = url() === of;
-    pressed('colours', !isStill && isPressed());
+    const isStill = painted().url === url;
+    press(paint, !isStill && isPressed(paint));
     say(isStill ? sentence(error instanceof Error ? error.message : String(error)) : '');
   }
 }

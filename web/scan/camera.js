@@ -11,8 +11,8 @@ import {drawLines, prepareDistance} from '../sensor/rig_picture.js';
 import {text} from '../base/texts.js';
 
 /** @typedef {import('../sensor/live_picture.js').Rig} Rig */
-/** @typedef {import('../sensor/live_worker.js').Reading} Reading */
-/** @typedef {import('../sensor/live_worker.js').Request} Request */
+/** @typedef {import('../sensor/live_reader.js').Reading} Reading */
+/** @typedef {import('../sensor/live_reader.js').Request} Request */
 
 const betweenPictures = 250;   // milliseconds; the scanner may be busy with a scan
 const betweenAttempts = 2000;  // milliseconds, while there is no picture
@@ -53,10 +53,23 @@ function rigNow() {
 let reader;
 
 /**
+ * Reads a picture where workers have no canvas: in Safari before 16.4.
+ * @param {Request} request @returns {Promise<Reading>}
+ */
+async function readHere(request) {
+  const {readPicture} = await import('../sensor/live_reader.js');
+  const {width, height} = request;
+  return readPicture(Object.assign(document.createElement('canvas'), {width, height}), request);
+}
+
+/**
  * Has the worker read a picture. One is read at a time.
  * @param {Request} request @returns {Promise<Reading>} rejects if it is not a picture
  */
 function read(request) {
+  if (!('OffscreenCanvas' in globalThis)) {
+    return readHere(request);
+  }
   const worker = reader ??= new Worker(new URL('../sensor/live_worker.js', import.meta.url), {type: 'module'});
   return new Promise((resolve, reject) => {
     worker.onmessage = ({data}) => data.error ? reject(new Error(data.error)) : resolve(data);

@@ -6,7 +6,7 @@ import * as format from '../base/format.js';
 import {coarseUrl, hasCoarse, loadsUnasked} from '../state.js';
 import {readStl} from '../model/stl.js';
 import {text} from '../base/texts.js';
-import {offerColours, prepareTools, putToolsAway, standUp, useTool} from './view_tools.js';
+import {offerPaints, prepareTools, putToolsAway, standUp, useTool} from './view_tools.js';
 
 /** @typedef {ReturnType<import('../screen.js').screenOf>['stage']} Stage */
 /** @typedef {import('../api/api.js').Model} Model */
@@ -62,7 +62,7 @@ function put(mesh, isFirst, isCoarse = false) {
   show(element('filled'), mesh.filled !== null);
   viewer?.show(mesh, {isFirst, isGrowing: Boolean(due?.growing), isCoarse});
   standUp();
-  offerColours(due?.hasColours && due.model?.url || null);
+  offerPaints(due?.model?.url ?? null, due?.hasColours ? 'colours' : 'views');
   if (isFirst) {
     viewer?.turn(!isStill);
   }

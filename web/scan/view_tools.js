@@ -6,6 +6,7 @@ import {measureText, withPoint} from '../model/measure.js';
 import {text} from '../base/texts.js';
 
 /** @typedef {import('../model/viewer.js').Viewer} Viewer */
+/** @typedef {import('../model/colours.js').Paint} Paint */
 
 /** @type {() => Viewer | undefined} */
 let viewer = () => undefined;
@@ -13,8 +14,8 @@ let viewer = () => undefined;
 let measuring = null;
 /** @type {'upright' | 'waiting' | 'laid'} waiting: for the side to lay the model on */
 let lying = 'upright';
-/** @type {string | null} the STL of the model that has colours */
-let coloured = null;
+/** @type {{url: string | null, paint: Paint}} the STL of the model that can be painted */
+let painted = {url: null, paint: 'colours'};
 
 /** @param {string} words  shown on the picture; empty: none */
 function say(words) {
@@ -64,13 +65,16 @@ function setCut(isCut) {
 }
 
 /**
- * Offers the colours of the shown model, which is drawn in clay at first.
- * @param {string | null} url  of its STL; null: it has none
+ * Offers colours for the shown model, which is drawn in clay at first.
+ * @param {string | null} url  of its STL; null: it has none @param {Paint} paint  which it has
  */
-export function offerColours(url) {
-  coloured = url;
-  pressed('colours', false);
-  show(element('colours'), url !== null);
+export function offerPaints(url, paint) {
+  painted = {url, paint};
+  for (const id of ['colours', 'views']) {
+    pressed(id, false);
+    show(element(id), url !== null && id === paint);
+  }
+  show(element('legend'), false);
 }
 
 /** Handles a click on the model. @param {number[]} place_mm */
@@ -99,10 +103,12 @@ export function putToolsAway() {
 export function prepareTools(shown) {
   viewer = shown;
   element('measure').addEventListener('click', () => setMeasure(measuring ? null : []));
-  element('colours').addEventListener('click', async () => {
-    const {toggleColours} = await import('../model/colours.js');
-    toggleColours({viewer, url: () => coloured, say: (words) => words === '' ? render() : say(words)});
-  });
+  for (const id of ['colours', 'views']) {
+    element(id).addEventListener('click', async () => {
+      const {togglePaint} = await import('../model/colours.js');
+      togglePaint({viewer, painted: () => painted, say: (words) => words === '' ? render() : say(words)});
+    });
+  }
   element('lay').addEventListener('click', () => setLying(lying === 'upright' ? 'waiting' : 'upright'));
   element('cut').addEventListener('click', () => {
     element('cut-share').value = 0.5;

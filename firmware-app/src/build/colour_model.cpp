@@ -5,9 +5,11 @@
 #include <string>
 
 #include "mesh/model_colours.hpp"
+#include "mesh/view_colours.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/units.hpp"
+#include "store/stored_scan.hpp"
 
 namespace octurn {
 namespace {
@@ -33,10 +35,17 @@ void expect_memory(const FacetFile& facets, const Intrinsics& lens, std::size_t 
   }
 }
 
+void expect_depth(const Scan& scan) {
+  if (scan.laser) {
+    throw Error(ErrorCode::bad_settings, "the scan has no depth images to count",
+                "Only a scan by a depth sensor has them.");
+  }
+}
+
 }  // namespace
 
-std::filesystem::path colours_file(const std::filesystem::path& model) {
-  return model.parent_path() / "colours.rgb";
+std::filesystem::path colours_file(const std::filesystem::path& model, Colours shown) {
+  return model.parent_path() / (shown == Colours::views ? "views.rgb" : "colours.rgb");
 }
 
 void expect_pictures(const Scan& scan) {
@@ -46,18 +55,22 @@ void expect_pictures(const Scan& scan) {
   }
 }
 
-void colour_model(const std::filesystem::path& model, const ModelScan& of, std::size_t memory_limit,
-                  const std::stop_token& stop) {
-  expect_pictures(of.scan);
+void colour_model(const std::filesystem::path& model, const ModelScan& of, Colours shown,
+                  std::size_t memory_limit, const std::stop_token& stop) {
+  const bool are_views = shown == Colours::views;
+  are_views ? expect_depth(of.scan) : expect_pictures(of.scan);
   const FacetFile facets(model);
   expect_memory(facets, of.scan.intrinsics, memory_limit);
-  const std::vector<Rgb> colours = model_colours(facets, of.folder, of.scan, stop);
+  const std::vector<Rgb> colours =
+      are_views ? view_colours(facets, readable_snapshots(of.folder, of.scan, stop), stop)
+                : model_colours(facets, of.folder, of.scan, stop);
   const auto bytes = std::as_bytes(std::span(colours));
-  write_file(colours_file(model), {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+  write_file(colours_file(model, shown),
+             {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }
 
-std::vector<Rgb> read_colours(const std::filesystem::path& model) {
-  const auto text = read_regular_file(colours_file(model), max_colours_bytes);
+std::vector<Rgb> read_colours(const std::filesystem::path& model, Colours shown) {
+  const auto text = read_regular_file(colours_file(model, shown), max_colours_bytes);
   if (!text || text->size() % sizeof(Rgb) != 0) {
     throw Error(ErrorCode::read_failed, "the colours of this model are missing, or not whole",
                 "Download it again.");

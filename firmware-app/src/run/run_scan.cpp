@@ -34,6 +34,9 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto wait_interval = std::chrono::milliseconds(500);
+// Of a turn, before the pose is solved for the preview: a quarter of a turn determines the axis.
+constexpr double preview_share = 1.0 / 3;
+constexpr double preview_stops = 6;
 
 /// Rounds an angle as scan.json does, in degrees: a later build from the folder has the same bytes.
 double stored_angle(double angle) { return radians_from_degrees(degrees_from_radians(angle)); }
@@ -66,7 +69,9 @@ class Run {
   bool take_depth(const Stop& at, double angle);
   bool take_lines(const Stop& at, double angle, LinePreview& preview);
   void resume();
+  Scan shown(Scan scan) const;
   SnapshotSource checked();
+  void solve_for_preview(const Scan& so_far);
   void add_stored();
   void rebuild();
   template <typename Tell>
@@ -82,8 +87,10 @@ class Run {
   Scan scan_;
   std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
   FittingReconstruction reconstruction_;
-  PoseChecks check_;          // of the snapshots added to the reconstruction
-  int added_ = 0;             // snapshots added to the reconstruction
+  PoseChecks check_;                        // of the snapshots added to the reconstruction
+  int added_ = 0;                           // snapshots added to the reconstruction
+  bool has_tried_preview_ = false;          // to solve the pose for the preview
+  std::optional<SolvedPose> preview_pose_;  // until `calibrate`, in place of the configured one
   std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
   EarlyModel early_;          // with the configured pose, while another is solved
   std::optional<SolvedOptics> seen_optics_;  // as the calibration measured them, applied or not
@@ -121,10 +128,10 @@ bool Run::take_depth(const Stop& at, double angle) {
   const Shot shot{.file = shot_file(done()), .angle = angle, .lost_share = rig_.take_lost_share()};
   store_snapshot(folder_, scan_, shot, *frame);
   observer_.on_progress(Phase::capturing, done());
-  add([added = make_snapshot(*std::move(frame), scan_, {.angle = stored_angle(angle)}),
-       index = scan_.shots.size() - 1, this](Reconstructor& reconstruction) {
-    check_.add(index, added);
-    reconstruction.add(added, stop_);
+  add([frame = *std::move(frame), angle = stored_angle(angle), so_far = scan_, this] {
+    const Snapshot added = make_snapshot(frame, shown(so_far), {.angle = angle});
+    check_.add(so_far.shots.size() - 1, added);
+    (*reconstruction_).add(added, stop_);
   });
   return true;
 }
@@ -156,9 +163,27 @@ void Run::resume() {
 }
 
 void Run::add_stored() {
-  add([stored = checked(), this](Reconstructor& reconstruction) {
-    reconstruction.add(stored, stop_);
-  });
+  add([stored = checked(), this] { (*reconstruction_).add(stored, stop_); });
+}
+
+/// The scan with the pose that its preview has.
+Scan Run::shown(Scan scan) const {
+  scan.solved = preview_pose_ ? preview_pose_ : scan.solved;
+  return scan;
+}
+
+/// Solves the pose from a part of the turn. With a wrong one, views that disagree carve thin parts
+/// away before one's eyes. The model is built again with the pose from the whole turn.
+void Run::solve_for_preview(const Scan& so_far) {
+  has_tried_preview_ = true;
+  const int threads = reconstruction_.options().threads;
+  const ScanSolution solution =
+      solve_scan(folder_, so_far, readable_snapshots(folder_, so_far, stop_), threads, stop_);
+  if (solution.replaces_told) {
+    preview_pose_ = solution.solved;
+    reconstruction_.start_again();
+    (*reconstruction_).add(readable_snapshots(folder_, shown(so_far), stop_), stop_);
+  }
 }
 
 /// Solves the sensor's pose from the snapshots. If it replaces the configured one, the
@@ -168,7 +193,7 @@ std::vector<CalibrationFinding> Run::calibrate() {
     return {};
   }
   observer_.on_progress(Phase::calibrating, done());
-  if (added_ == done() && wait_for_added([] {}) && !stop_.stop_requested()) {
+  if (added_ == done() && wait_for_added([] {}) && !preview_pose_ && !stop_.stop_requested()) {
     early_.begin(*reconstruction_, readable_snapshots(folder_, scan_, stop_), folder_ / "Scan.stl");
   }
   const ScanSolution solution =
@@ -181,6 +206,8 @@ std::vector<CalibrationFinding> Run::calibrate() {
     early_.give_up();
     scan_.solved = solution.solved;
     write_solved_pose(folder_, *scan_.solved);
+  }
+  if (std::exchange(preview_pose_, {}) || solution.replaces_told) {
     reconstruction_.start_again();
     added_ = 0;
   }
@@ -188,7 +215,7 @@ std::vector<CalibrationFinding> Run::calibrate() {
 }
 
 SnapshotSource Run::checked() {
-  return checked_snapshots(readable_snapshots(folder_, scan_, stop_), check_);
+  return checked_snapshots(readable_snapshots(folder_, shown(scan_), stop_), check_);
 }
 
 /// Adds all stored snapshots again, with the pose of `scan_`.
@@ -202,7 +229,7 @@ void Run::rebuild() {
                                }};
   do {
     *read = 0;
-    add([counted, this](Reconstructor& reconstruction) { reconstruction.add(counted, stop_); });
+    add([counted, this] { (*reconstruction_).add(counted, stop_); });
   } while (!wait_for_added([&] { observer_.on_rebuilt(std::min(read->load(), done())); }));
   observer_.on_rebuilt(done());
 }
@@ -233,10 +260,17 @@ void Run::add(Add add_to) {
     return;
   }
   added_ = done();
-  adding_ = std::async(std::launch::async, [this, done = done(), add_to = std::move(add_to)] {
-    add_to(*reconstruction_);
-    if (done < settings_.snapshots && !stop_.stop_requested()) {  // else the model follows
-      observer_.on_added(*reconstruction_, done);
+  const bool is_preview = done() < settings_.snapshots;  // else the model follows
+  const bool solves = is_preview && !has_tried_preview_ && !scan_.laser && !scan_.solved &&
+                      settings_.pose != PoseSource::configured &&
+                      done() >= std::max(preview_share * settings_.snapshots, preview_stops);
+  adding_ = std::async(std::launch::async, [=, so_far = scan_, this, add = std::move(add_to)] {
+    add();
+    if (solves) {
+      solve_for_preview(so_far);
+    }
+    if (is_preview && !stop_.stop_requested()) {
+      observer_.on_added(*reconstruction_, static_cast<int>(so_far.shots.size()));
     }
   });
 }

@@ -19,7 +19,8 @@ namespace octurn {
 ///
 /// Unless the settings say `configured`, the sensor's pose is solved from the snapshots at the last
 /// stop. A pose that is accepted and does not merely confirm the configured one is stored beside it
-/// in scan.json, and the model is built again from the stored snapshots.
+/// in scan.json, and the model is built again from the stored snapshots. For the preview alone, it
+/// is solved once after a third of the turn as well.
 ///
 /// With a depth sensor, the platform turns on after the last stop to the first one's angle for one
 /// more depth image, the last look. It is not part of the model; it measures how the object moved,

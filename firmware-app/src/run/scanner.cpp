@@ -522,9 +522,9 @@ std::unique_ptr<ModelStream> Scanner::stream_model(std::string_view id,
   });
 }
 
-bool Scanner::colour_model(const Job& job, int build) {
-  const auto make = [job, build, this](ModelPipe& pipe) {
-    octurn::colour_model(store_.model_file(job.id, build), scan_of_model(store_, job, build),
+bool Scanner::colour_model(const Job& job, int build, Colours shown) {
+  const auto make = [job, build, shown, this](ModelPipe& pipe) {
+    octurn::colour_model(store_.model_file(job.id, build), scan_of_model(store_, job, build), shown,
                          limits_.memory_bytes, pipe.stop().get_token());
     pipe.set_length(0);
     pipe.close();

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "build/colour_model.hpp"
 #include "calibration/calibration_store.hpp"
 #include "calibration/lens_files.hpp"
 #include "cluster/slurm_builds.hpp"
@@ -261,7 +262,7 @@ class Scanner {
   /// @param build  number of the model's build; 0: the scan's own model
   /// @return false while a scan or a build runs, or if another request takes too long
   /// @throws Error  as `octurn::colour_model` and `scan_of_model`; "busy"  if a scan starts
-  bool colour_model(const Job& job, int build);
+  bool colour_model(const Job& job, int build, Colours shown);
 
   /// Has the worker call `check` with the rig, between scans, and waits for it. A scan that starts
   /// asks it to stop.

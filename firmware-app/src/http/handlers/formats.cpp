@@ -5,6 +5,7 @@
 #include <functional>
 #include <future>
 #include <mutex>
+#include <optional>
 #include <semaphore>
 #include <string>
 #include <system_error>
@@ -83,23 +84,24 @@ Response send_coarse(const Request& request, const fs::path& model) {
   return file_response(request, file, "model/stl", "coarse.stl");
 }
 
-/// Colouring of a mesh: none, or the colours of the scan's pictures.
-enum class Paint { clay, colours };
+/// The part of a file's name that tells its colours.
+std::string suffix_of(std::optional<Colours> paint) {
+  return !paint ? "" : *paint == Colours::views ? "-views" : "-colour";
+}
 
 /// The path of a model in another format. It is made if it is missing, or older than the model, the
 /// scan's name or the colours.
 fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model, const MeshFormat& format,
-                    Paint paint = Paint::clay) {
-  const bool is_coloured = paint == Paint::colours;
-  fs::path file = model.parent_path() / (is_coloured ? "Scan-colour" : "Scan");
+                    std::optional<Colours> paint = {}) {
+  fs::path file = model.parent_path() / ("Scan" + suffix_of(paint));
   file += format.extension;
   auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
-  source = is_coloured ? std::max(source, written(colours_file(model))) : source;
+  source = paint ? std::max(source, written(colours_file(model, *paint))) : source;
   const fs::path thumbnail = format.has_thumbnail ? fresh_thumbnail(model) : fs::path();
   keep_fresh(file, source, [&] {
     const FacetFile facets(model);
     const auto png = read_regular_file(thumbnail, max_thumbnail_bytes);  // nothing without a path
-    const std::vector<Rgb> colours = is_coloured ? read_colours(model) : std::vector<Rgb>();
+    const std::vector<Rgb> colours = paint ? read_colours(model, *paint) : std::vector<Rgb>();
     format.write({.facets = facets,
                   .name = download_name(job, ""),
                   .thumbnail = png.value_or(""),
@@ -109,34 +111,39 @@ fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model, const
   return file;
 }
 
-/// Parses a query that is empty or has `colour` as true or false. @throws Error "bad-settings"
-Paint wanted_paint(const Request& request) {
+/// Parses a query that is empty or has `colour`. @return nothing: clay @throws Error "bad-settings"
+std::optional<Colours> wanted_paint(const Request& request) {
   if (request.parameters.empty()) {
-    return Paint::clay;
+    return std::nullopt;
   }
   const auto& [name, value] = request.parameters.front();
-  if (request.parameters.size() > 1 || name != "colour" || (value != "true" && value != "false")) {
+  const bool is_known = value == "true" || value == "false" || value == "views";
+  if (request.parameters.size() > 1 || name != "colour" || !is_known) {
     throw Error(ErrorCode::bad_settings, "the query of this format takes colour alone",
-                "It is true or false: ?colour=true");
+                "It is true, false or views: ?colour=true");
   }
-  return value == "true" ? Paint::colours : Paint::clay;
+  return value == "false"   ? std::nullopt
+         : value == "views" ? std::optional(Colours::views)
+                            : std::optional(Colours::pictures);
 }
 
 /// Has the worker make the colours of a model if they are missing or outdated. The pictures are
 /// many and large, so that an occupied worker refuses.
 /// @param build  number of the model's build
-/// @throws Error "bad-settings"  if the scan has no colour pictures, "busy", "too-many"
-void keep_colours(App& app, const Job& job, const fs::path& model, int build) {
-  if (!job.builds.have_colours) {
+/// @throws Error "bad-settings"  if the scan does not have what they are made of, "busy",
+///                               "too-many"
+void keep_colours(App& app, const Job& job, const fs::path& model, int build, Colours shown) {
+  if (shown == Colours::pictures && !job.builds.have_colours) {
     throw Error(ErrorCode::bad_settings, "this scan has no pictures in colour",
                 "Only a scan by laser line has them, if its camera sees colours.");
   }
-  if (is_fresh(colours_file(model), written(model))) {
+  const fs::path file = colours_file(model, shown);
+  if (is_fresh(file, written(model))) {
     return;
   }
   const Place place = place_for_making();
   const std::lock_guard lock(colouring);
-  if (!is_fresh(colours_file(model), written(model)) && !app.scanner.colour_model(job, build)) {
+  if (!is_fresh(file, written(model)) && !app.scanner.colour_model(job, build, shown)) {
     throw Error(ErrorCode::busy, "a scan is running, or another model is being made",
                 "Wait for its end.");
   }
@@ -153,11 +160,11 @@ Response send_in_format(App& app, const Request& request, const Job& job, const 
     throw Error(ErrorCode::not_found, "there is no " + fs::path(request.path).filename().string(),
                 "Ask for Scan.stl, " + mesh_file_names("Scan") + ".");
   }
-  const Paint paint = wanted_paint(request);
-  if (paint == Paint::colours) {
-    keep_colours(app, job, model, build);
-    suffix += "-colour";
+  const std::optional<Colours> paint = wanted_paint(request);
+  if (paint) {
+    keep_colours(app, job, model, build, *paint);
   }
+  suffix += suffix_of(paint);
   return file_response(request, fresh_mesh(app, job, model, *format, paint),
                        std::string(format->media_type), download_name(job, suffix + extension));
 }

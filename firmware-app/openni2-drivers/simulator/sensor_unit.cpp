@@ -12,7 +12,7 @@ namespace {
 
 /// Pixels of the pinhole picture beyond each edge: k1 of -0.2 shows the corners 30 pixels further
 /// out.
-constexpr int margin = 32;
+constexpr int beyond_picture = 32;
 
 /// Inverts the distortion: the normalised coordinates of a pinhole camera that appear at `shown`.
 Eigen::Vector2d undistorted(const SensorOptics& optics, const Eigen::Vector2d& shown) {
@@ -65,7 +65,7 @@ SensorOptics optics_of_unit(std::uint32_t unit) {
 }
 
 Intrinsics pinhole_of(const SensorOptics& optics) {
-  const int beyond = optics.k1 != 0 || optics.k2 != 0 ? margin : 0;
+  const int beyond = optics.k1 != 0 || optics.k2 != 0 ? beyond_picture : 0;
   return {.width = camera.width + 2 * beyond,
           .height = camera.height + 2 * beyond,
           .fx = optics.fx,
@@ -90,7 +90,8 @@ InverseDepth as_seen_by(const SensorOptics& optics, const InverseDepth& pinhole)
       const bool is_inside =
           column >= 0 && row >= 0 && column < picture.width - 1 && row < picture.height - 1;
       const float truth = is_inside ? between(pinhole, picture.width, column, row) : 0;
-      seen.push_back(truth > 0 ? std::max(0.0F, static_cast<float>(optics.depth_scale * truth -
+      seen.push_back(truth > 0 ? std::max(0.0F, static_cast<float>(optics.depth_scale *
+                                                                       static_cast<double>(truth) -
                                                                    optics.depth_offset_per_m))
                                : 0.0F);
     }

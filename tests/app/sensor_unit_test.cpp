@@ -55,7 +55,8 @@ TEST(SensorUnit, ShowsEachPixelWhereItsDistortionPutsIt) {
 TEST(SensorUnit, ReportsDepthsByItsOwnScaleAndOffset) {
   const SensorOptics optics{.depth_scale = 1.012, .depth_offset_per_m = 0.003};
   const InverseDepth seen = as_seen_by(optics, InverseDepth(pixels(camera), 1 / 0.7F));
-  EXPECT_NEAR((seen[1000] + optics.depth_offset_per_m) / optics.depth_scale, 1 / 0.7, 1e-6);
+  const double reported = static_cast<double>(seen[1000]);
+  EXPECT_NEAR((reported + optics.depth_offset_per_m) / optics.depth_scale, 1 / 0.7, 1e-6);
 }
 
 TEST(SensorUnit, DrawsOpticsWithinThoseOfPublishedUnits) {

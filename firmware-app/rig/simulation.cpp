@@ -18,10 +18,10 @@ constexpr double farthest_wall = 6;
 constexpr double max_speed = 1000;
 
 [[noreturn]] void refuse(const std::string& what) {
-  throw Error(
-      ErrorCode::bad_simulation, "simulator: " + what,
-      "A simulated sensor is octurn-simulator://[MESH][?seed=N&noise=X&pattern=X&misalignment=X"
-      "&wall=X&speed=X&silent-after=N&lost-after=N].");
+  throw Error(ErrorCode::bad_simulation, "simulator: " + what,
+              "A simulated sensor is "
+              "octurn-simulator://[MESH][?seed=N&noise=X&pattern=X&unit=N&misalignment=X"
+              "&wall=X&speed=X&silent-after=N&lost-after=N].");
 }
 
 template <typename Number>
@@ -78,6 +78,9 @@ void set(Simulation& simulation, std::string_view key, std::string_view value) {
     simulation.noise = parse_number(key, value, 0.0, max_noise);
   } else if (key == "pattern") {
     simulation.pattern = parse_number(key, value, 0.0, max_pattern);
+  } else if (key == "unit") {
+    simulation.unit =
+        parse_number(key, value, 0U, std::numeric_limits<decltype(simulation.unit)>::max());
   } else if (key == "misalignment") {
     simulation.misalignment = parse_number(key, value, 0.0, max_misalignment);
   } else if (key == "wall") {
@@ -115,6 +118,9 @@ std::string simulation_uri(const Simulation& simulation) {
   }
   if (simulation.pattern != usual.pattern) {
     add("pattern", to_text(simulation.pattern));
+  }
+  if (simulation.unit != usual.unit) {
+    add("unit", to_text(simulation.unit));
   }
   if (simulation.misalignment != usual.misalignment) {
     add("misalignment", to_text(simulation.misalignment));

@@ -13,13 +13,14 @@ namespace octurn {
 
 /// Settings of a simulated Kinect, encoded in the URI by which OpenNI2 opens it:
 /// `octurn-simulator://[MESH][?key=value&...]`, with the keys `seed`, `noise`, `pattern`,
-/// `misalignment`, `wall`, `speed`, `silent-after` and `lost-after`. In MESH, `%` and `?` are
-/// written `%25` and `%3F`.
+/// `unit`, `misalignment`, `wall`, `speed`, `silent-after` and `lost-after`. In MESH, `%` and `?`
+/// are written `%25` and `%3F`.
 struct Simulation {
   std::string mesh_file = {};  ///< STL in millimetres, Z up; empty: the simulator's own object
   std::uint32_t seed = 1;      ///< of noise and pattern: same seed, same frames
   double noise = 1.0;          ///< times a real Kinect's; 0 leaves quantisation and shadow
   double pattern = 1.0;        ///< fixed pattern error, times a real Kinect's; 0: none
+  std::uint32_t unit = 0;      ///< whose optics it has, as of `optics_of_unit`
   double misalignment = 1.0;   ///< true pose's error, times 5 mm and 1 degree; 0: as configured
   std::optional<double> wall = {};  ///< metres to a wall that it faces instead of the platform
   double speed = 1.0;               ///< times 30 frames a second, as far as the processor keeps up

@@ -13,6 +13,7 @@ TEST(Simulation, IsItsSchemeAloneWhenNothingIsAsked) {
   EXPECT_EQ(usual.mesh_file, "");
   EXPECT_EQ(usual.noise, 1);
   EXPECT_EQ(usual.pattern, 1);
+  EXPECT_EQ(usual.unit, 0U);
   EXPECT_EQ(usual.misalignment, 1);
   EXPECT_FALSE(usual.wall.has_value());
   EXPECT_EQ(usual.speed, 1);
@@ -25,6 +26,7 @@ TEST(Simulation, NamesEachSettingInItsUri) {
                             .seed = 7,
                             .noise = 0.5,
                             .pattern = 0.25,
+                            .unit = 3,
                             .misalignment = 0,
                             .wall = 0.75,
                             .speed = 20,
@@ -33,21 +35,22 @@ TEST(Simulation, NamesEachSettingInItsUri) {
 
   EXPECT_EQ(simulation_uri(asked),
             "octurn-simulator:///home/me/100%25%3F.stl"
-            "?seed=7&noise=0.5&pattern=0.25&misalignment=0&wall=0.75&speed=20&silent-after=100"
-            "&lost-after=0");
+            "?seed=7&noise=0.5&pattern=0.25&unit=3&misalignment=0&wall=0.75&speed=20"
+            "&silent-after=100&lost-after=0");
 }
 
 TEST(Simulation, ComesBackFromItsUri) {
   const Simulation parsed = parse_simulation(
       "octurn-simulator://"
       "a%20cup%3f.stl?lost-after=3&silent-after=2&speed=0.5&wall=0.6&pattern=3&noise=2&"
-      "misalignment=0.5&"
+      "misalignment=0.5&unit=2&"
       "seed=9");
 
   EXPECT_EQ(parsed.mesh_file, "a cup?.stl");
   EXPECT_EQ(parsed.seed, 9U);
   EXPECT_EQ(parsed.noise, 2);
   EXPECT_EQ(parsed.pattern, 3);
+  EXPECT_EQ(parsed.unit, 2U);
   EXPECT_EQ(parsed.misalignment, 0.5);
   EXPECT_EQ(parsed.wall, 0.6);
   EXPECT_EQ(parsed.speed, 0.5);

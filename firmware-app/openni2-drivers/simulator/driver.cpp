@@ -17,16 +17,20 @@ namespace octurn {
 namespace {
 
 Scene make_scene(const Simulation& simulation) {
+  const SensorOptics optics = optics_of_unit(simulation.unit);
   if (simulation.wall) {
-    return Scene::of_wall(*simulation.wall);
+    return Scene::of_wall(*simulation.wall, optics);
   }
   const Eigen::Isometry3d pose = misaligned_platform_from_sensor(simulation.misalignment);
-  return Scene(told_object(simulation.mesh_file), pose);
+  return Scene(told_object(simulation.mesh_file), pose, optics);
 }
 
-/// The serial number identifies the sensor's fixed pattern, which the seed determines.
+/// The serial number identifies the sensor's fixed pattern, which the seed determines, and its
+/// optics.
 std::string make_serial(const Simulation& simulation) {
-  const std::string serial = "simulated-" + std::to_string(simulation.seed);
+  const std::string serial =
+      "simulated-" + std::to_string(simulation.seed) +
+      (simulation.unit > 0 ? "-unit-" + std::to_string(simulation.unit) : std::string());
   return simulation.pattern > 0 ? serial : serial + "-perfect";
 }
 

@@ -14,12 +14,17 @@ constexpr double baseline = 0.075;  // metres from the camera to the projector, 
 /// The projector's picture has the camera's rows, and more columns: enough to cover everything that
 /// the camera sees beyond 0.37 m.
 constexpr int wider = 116;  // pixels; f b / 0.37 m
-constexpr Intrinsics projector = {.width = camera.width + wider, .cx = camera.cx + wider};
+
+Intrinsics projector_beside(Intrinsics camera) {
+  camera.width += wider;
+  camera.cx += wider;
+  return camera;
+}
 
 /// Whether the projector lights a point, by shadow mapping: the projector's picture is the inverse
 /// depth of the first surface along each of its rays.
-bool is_lit(const float* projector_row, int u, float inverse_depth) {
-  constexpr auto shift = static_cast<float>(camera.fx * baseline);
+/// @param shift  pixels for each 1/m
+bool is_lit(const float* projector_row, int u, float inverse_depth, float shift) {
   constexpr float slack = 0.0025F;  // 1/m, 1 mm at 0.65 m: surfaces must not shadow themselves
   const float column = static_cast<float>(u + wider) - shift * inverse_depth;
   if (!(column >= 0)) {
@@ -32,42 +37,47 @@ bool is_lit(const float* projector_row, int u, float inverse_depth) {
 
 }  // namespace
 
-Scene::Scene(Mesh object, const Eigen::Isometry3d& platform_from_sensor)
-    : Scene(std::move(object), surroundings(), platform_from_sensor) {}
+Scene::Scene(Mesh object, const Eigen::Isometry3d& platform_from_sensor, const SensorOptics& optics)
+    : Scene(std::move(object), surroundings(), platform_from_sensor, optics) {}
 
-Scene Scene::of_wall(double distance) {
+Scene Scene::of_wall(double distance, const SensorOptics& optics) {
   const auto z = static_cast<float>(distance);
   Mesh wall;
   add_rectangle(wall, {-2 * z, -2 * z, z}, {4 * z, 0, 0}, {0, 4 * z, 0});
-  return {{}, wall, Eigen::Isometry3d::Identity()};
+  return {{}, wall, Eigen::Isometry3d::Identity(), optics};
 }
 
-Scene::Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor)
+Scene::Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor,
+             const SensorOptics& optics)
     : object_(std::move(object)),
+      optics_(optics),
+      camera_(pinhole_of(optics)),
+      projector_(projector_beside(camera_)),
       camera_from_platform_(platform_from_sensor.inverse()),
       projector_from_platform_(Eigen::Translation3d(-baseline, 0, 0) * camera_from_platform_),
-      camera_background_(pixels(camera), 0.0F),
-      projector_background_(pixels(projector), 0.0F) {
-  rasterise(around, camera_from_platform_, camera, camera_background_);
-  rasterise(around, projector_from_platform_, projector, projector_background_);
+      camera_background_(pixels(camera_), 0.0F),
+      projector_background_(pixels(projector_), 0.0F) {
+  rasterise(around, camera_from_platform_, camera_, camera_background_);
+  rasterise(around, projector_from_platform_, projector_, projector_background_);
 }
 
 InverseDepth Scene::lit_at(double angle) const {
   const Eigen::Isometry3d turn = object_.platform_from_mesh(angle);
   InverseDepth seen = camera_background_;
   InverseDepth reached = projector_background_;
-  rasterise(object_.mesh(), camera_from_platform_ * turn, camera, seen);
-  rasterise(object_.mesh(), projector_from_platform_ * turn, projector, reached);
-  for (int v = 0; v < camera.height; ++v) {
-    float* row = seen.data() + static_cast<std::ptrdiff_t>(v) * camera.width;
-    const float* projector_row = reached.data() + static_cast<std::ptrdiff_t>(v) * projector.width;
-    for (int u = 0; u < camera.width; ++u) {
-      if (!is_lit(projector_row, u, row[u])) {
+  rasterise(object_.mesh(), camera_from_platform_ * turn, camera_, seen);
+  rasterise(object_.mesh(), projector_from_platform_ * turn, projector_, reached);
+  const auto shift = static_cast<float>(camera_.fx * baseline);
+  for (int v = 0; v < camera_.height; ++v) {
+    float* row = seen.data() + static_cast<std::ptrdiff_t>(v) * camera_.width;
+    const float* projector_row = reached.data() + static_cast<std::ptrdiff_t>(v) * projector_.width;
+    for (int u = 0; u < camera_.width; ++u) {
+      if (!is_lit(projector_row, u, row[u], shift)) {
         row[u] = 0;
       }
     }
   }
-  return seen;
+  return as_seen_by(optics_, seen);
 }
 
 }  // namespace octurn

@@ -7,6 +7,7 @@
 #include "simulator/mesh.hpp"
 #include "simulator/placed_object.hpp"
 #include "simulator/rasterise.hpp"
+#include "simulator/sensor_unit.hpp"
 
 namespace octurn {
 
@@ -17,25 +18,34 @@ class Scene {
  public:
   /// @param object  in the platform's frame at angle 0, metres
   /// @param platform_from_sensor  the sensor's true pose
+  /// @param optics  the sensor's
   explicit Scene(Mesh object,
-                 const Eigen::Isometry3d& platform_from_sensor = nominal_platform_from_sensor());
+                 const Eigen::Isometry3d& platform_from_sensor = nominal_platform_from_sensor(),
+                 const SensorOptics& optics = {});
 
   /// Makes a scene of a wall only. @param distance  metres; the sensor looks squarely at the wall
-  static Scene of_wall(double distance);
+  static Scene of_wall(double distance, const SensorOptics& optics = {});
 
   /// Turns the object over. @param pose  as of `platform_from_object`
   /// @return false if it has this pose already
   bool set_object_pose(int pose) { return object_.set_pose(pose); }
 
-  /// The surfaces that the camera sees and the projector lights, 640 x 480; 0 where there is none.
+  const SensorOptics& optics() const { return optics_; }
+
+  /// What the sensor reports of the surfaces that the camera sees and the projector lights, 640 x
+  /// 480; 0 where there is none.
   /// @param angle  of the platform, radians, counter-clockwise seen from above
   InverseDepth lit_at(double angle) const;
 
  private:
   /// @param around  the surroundings, which do not turn, in the platform's frame
-  Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor);
+  Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor,
+        const SensorOptics& optics);
 
   PlacedObject object_;
+  SensorOptics optics_;
+  Intrinsics camera_;
+  Intrinsics projector_;
   Eigen::Isometry3d camera_from_platform_;
   Eigen::Isometry3d projector_from_platform_;
   InverseDepth camera_background_;

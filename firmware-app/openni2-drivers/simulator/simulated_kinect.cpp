@@ -97,8 +97,8 @@ void SimulatedKinect::set_object_pose(int pose) {
 }
 
 void SimulatedKinect::look_again() {
-  const InverseDepth before =
-      std::exchange(lit_, wall_ > 0 ? Scene::of_wall(wall_).lit_at(0) : scene_.lit_at(angle_));
+  const InverseDepth before = std::exchange(
+      lit_, wall_ > 0 ? Scene::of_wall(wall_, scene_.optics()).lit_at(0) : scene_.lit_at(angle_));
   update_pixels(changed_from(before));
 }
 

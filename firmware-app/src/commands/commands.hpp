@@ -19,8 +19,9 @@ struct RigArguments {
   bool laser = false;          ///< simulates a camera with line lasers, not a depth sensor
   std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
   bool other_lens = false;     ///< the simulated camera's lens differs from the settings
-  bool perfect =
-      false;  ///< no fixed pattern error of the simulated sensor; its configured pose is true
+  bool perfect = false;    ///< the simulated sensor has no error but noise; its configured pose is
+                           ///< true
+  std::uint32_t unit = 1;  ///< whose optics the simulated sensor has, unless it is perfect
   std::optional<double> wall = {};        ///< metres from the simulated sensor to a wall it faces
   double speed = 1.0;                     ///< of the simulated rig, relative to real time
   std::optional<double> gear_ratio = {};  ///< of the simulated turntable; nothing: as configured

@@ -99,6 +99,11 @@ std::vector<const CLI::Option*> add_depth_simulation_options(CLI::App& command, 
           ->type_name("METRES")
           ->check(CLI::Range(0.3, 6.0)),
       command
+          .add_option("--simulate-unit", rig.unit,
+                      "which Kinect is simulated: each number has other optics, 0 the data "
+                      "sheet's (1)")
+          ->type_name("N"),
+      command
           .add_option("--simulate-gear", rig.gear_ratio,
                       "gear ratio of the simulated turntable, where it is not what is set")
           ->type_name("RATIO")

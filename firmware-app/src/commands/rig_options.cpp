@@ -107,6 +107,7 @@ RigOptions rig_options(const RigArguments& arguments, const Config& config) {
   const double imperfection = arguments.perfect ? 0 : 1;
   const std::string simulated = simulation_uri({.mesh_file = arguments.mesh_file,
                                                 .pattern = imperfection,
+                                                .unit = arguments.perfect ? 0 : arguments.unit,
                                                 .misalignment = imperfection,
                                                 .wall = arguments.wall,
                                                 .speed = arguments.speed});

@@ -42,7 +42,7 @@ std::string take(std::string_view& bytes, std::size_t count) {
 
 /// A depth image of a width in the first byte, and of the other bytes as depths.
 std::string to_png(std::string_view content) {
-  const int width = content.empty() ? 1 : 1 + content.front() % 32;
+  const int width = content.empty() ? 1 : 1 + static_cast<unsigned char>(content.front()) % 32;
   octurn::DepthFrame frame{.width = width};
   for (std::size_t i = 1; i + 1 < content.size(); i += 2) {
     frame.depth.push_back(static_cast<std::uint16_t>(

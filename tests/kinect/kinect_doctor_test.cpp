@@ -3,14 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <thread>
 
 #include "kinect/kinect_on_desk.hpp"
 #include "rig/usb_log.hpp"
-#include "support/patience.hpp"
 #include "support/program.hpp"
 #include "support/zip.hpp"
 
@@ -75,23 +72,6 @@ TEST(KinectDoctor, PutsARecordingOfTheWireIntoTheArchive) {
   for (const ArchivedFile& one : files) {
     EXPECT_EQ(one.content.find("A00000000000000A"), std::string::npos) << one.name;
   }
-}
-
-TEST(KinectDoctor, WritesNoArchiveIfItIsStoppedWhileItRecordsTheWire) {
-  const TemporaryFolder folder;
-  const fs::path file = folder.path() / "day.zip";
-  KinectOnDesk desk({wall()});
-  Program doctor({octurn_program(), "doctor", "--simulate", "--sensor", "kinect://", "--data",
-                  folder.path(), "--zip", file});
-  const auto deadline = std::chrono::steady_clock::now() + patience;
-  while (desk->video_starts < 2 && std::chrono::steady_clock::now() < deadline) {  // 1: its checks
-    std::this_thread::sleep_for(std::chrono::milliseconds(5));
-  }
-  ASSERT_EQ(desk->video_starts, 2);
-  doctor.send_signal(SIGINT);
-  EXPECT_EQ(doctor.wait(), 1);
-  EXPECT_NE(doctor.errors().find("no archive was written"), std::string::npos) << doctor.errors();
-  EXPECT_FALSE(fs::exists(file));
 }
 
 TEST(KinectDoctor, CountsLostPackets) {

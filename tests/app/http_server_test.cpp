@@ -268,7 +268,7 @@ TEST(HttpServer, SaysWhyItCannotListenOnIPv6) {
   }
 }
 
-TEST(HttpServer, ReadsNoRequestAfterOneWhoseLengthIsInDoubt) {
+TEST(HttpServer, RefusesARequestWhoseLengthIsInDoubtAndReadsNoneAfterIt) {
   const HttpServer server(patient, echo);
   for (const char* const lengths :
        {"Content-Length: 0x5\r\n", "Content-Length: 0\r\nContent-Length: 44\r\n"}) {
@@ -276,6 +276,7 @@ TEST(HttpServer, ReadsNoRequestAfterOneWhoseLengthIsInDoubt) {
         server.port(), std::string("GET /first HTTP/1.1\r\nHost: localhost\r\n"
                                    "Connection: keep-alive\r\n") +
                            lengths + "\r\nGET /second HTTP/1.1\r\nHost: localhost\r\n\r\n");
+    EXPECT_EQ(reply.status, 400) << lengths;
     EXPECT_EQ(reply.header("Connection"), "close") << lengths;
     EXPECT_EQ(reply.body.find("second"), std::string::npos) << reply.body;
   }

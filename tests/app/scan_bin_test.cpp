@@ -68,6 +68,20 @@ TEST_F(ScanBinTest, IsThereForTheNextRunOfTheProgram) {
   EXPECT_EQ(store.find(id)->state, JobState::finished);
 }
 
+TEST_F(ScanBinTest, KeepsNoFileThatADeadProcessWasWriting) {
+  std::string id;
+  {
+    ScanStore store(folder_.path());
+    id = finished(store).id;
+    put(store.folder(id) / ".name.txt.14653-0", "half a name");
+    store.discard(id);
+  }
+  ScanStore store(folder_.path());
+  store.restore(id);
+  EXPECT_FALSE(fs::exists(store.folder(id) / ".name.txt.14653-0"));
+  EXPECT_TRUE(fs::exists(store.model_file(id)));
+}
+
 TEST_F(ScanBinTest, IsEmptiedForGood) {
   ScanStore store(folder_.path());
   const Job job = finished(store);

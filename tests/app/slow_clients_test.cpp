@@ -203,5 +203,28 @@ TEST(AbsoluteTarget, IsAnsweredForTheHostThatItNames) {
   EXPECT_EQ(reply.body, "/a at " + host);
 }
 
+TEST(AbsoluteTarget, IsRefusedWithAReasonIfItIsNotOfThisServer) {
+  std::atomic<int> asked = 0;
+  const HttpServer server({.address = "127.0.0.1", .port = 0}, [&](const Request&) {
+    ++asked;
+    return Response{};
+  });
+  const std::string rest = " HTTP/1.1\r\nHost: localhost\r\nConnection: keep-alive\r\n\r\n";
+  for (const auto& [target, status] :
+       {std::pair("http://localhost:1/a", 421), std::pair("https://localhost/", 421),
+        std::pair("http://evil.example:1/", 421), std::pair("*", 400)}) {
+    const Reply reply = reply_to(server.port(), std::string("GET ") + target + rest);
+    EXPECT_EQ(reply.status, status) << target;
+    EXPECT_NE(reply.body.find(target), std::string::npos) << reply.body;
+    EXPECT_EQ(reply.header("Connection"), "close") << target;
+  }
+  EXPECT_EQ(asked, 0);
+  const FileDescriptor socket = connected(server.port());
+  send_text(socket, "GET /a" + rest + "GET http://localhost:1/b" + rest);
+  const std::string both = receive_all(socket);
+  EXPECT_NE(both.find("HTTP/1.1 200"), std::string::npos) << both;
+  EXPECT_NE(both.find("HTTP/1.1 421"), std::string::npos) << both;
+}
+
 }  // namespace
 }  // namespace octurn

@@ -62,6 +62,12 @@ export function manySnapshots(count, width, height) {
   return zipOf([['scan.json', JSON.stringify(scan)], ...scan.snapshots.map(({file}) => [file, png])]);
 }
 
+/** An archive that once made the daemon take a gigabyte: its scan.json has millions of empty lists. */
+export function hostileArchive() {
+  const scan = JSON.stringify({...scanJson(1, 48, 36), snapshots: 0}).replace('"snapshots":0', `"snapshots":[${'[],'.repeat(5e6)}[]]`);
+  return zipOf([['scan.json', scan]]);
+}
+
 /** Sends an archive. @returns {Promise<{status: number, text: string}>} */
 export function importOf(daemon, archive) {
   return new Promise((resolve, reject) => {

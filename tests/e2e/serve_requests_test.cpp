@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
+#include <vector>
 
 #include "support/daemon.hpp"
 #include "support/http_client.hpp"
@@ -72,6 +73,35 @@ TEST(ServeRequests, RefusesOtherSites) {
   EXPECT_EQ(reply_to(daemon.port(), rebound).status, 421);
   EXPECT_TRUE(parsed(daemon.get("/api/v1/scans"))["scans"].empty());
   EXPECT_EQ(post({{"Origin", "http://localhost:" + std::to_string(daemon.port())}}), 202);
+}
+
+// The host of a target that is a URL is the one that counts (RFC 9112, section 3.2.2).
+TEST(ServeRequests, JudgesTheHostOfAnAbsoluteTargetAndNotTheHeader) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const auto status = [&](const std::string& host, const std::string& header) {
+    return reply_to(daemon.port(), "GET http://" + host + ":" + std::to_string(daemon.port()) +
+                                       "/api/v1/status HTTP/1.1\r\nHost: " + header + "\r\n\r\n")
+        .status;
+  };
+  EXPECT_EQ(status("localhost", "localhost"), 200);
+  EXPECT_EQ(status("octurn.local", "evil.example"), 200);
+  EXPECT_EQ(status("evil.example", "localhost"), 421);
+}
+
+TEST(ServeRequests, StartsAScanBesideArchivesThatComeSlowly) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  std::vector<FileDescriptor> senders;
+  for (int i = 0; i < 6; ++i) {
+    senders.push_back(connected(daemon.port()));
+    send_text(senders.back(),
+              "POST /api/v1/scans/import HTTP/1.1\r\nHost: localhost\r\n"
+              "Content-Type: application/zip\r\nContent-Length: 1000000\r\n\r\nPK");
+  }
+  // All places for archives are taken: the first ones wait for their bytes, others are refused.
+  EXPECT_EQ(reply_from(receive_all(senders.back())).status, 503);
+  EXPECT_EQ(daemon.wait_until_done(daemon.start(quick))["state"], "finished");
 }
 
 TEST(ServeRequests, SaysWhatAPathTakes) {

@@ -207,5 +207,27 @@ TEST(Settings, GiveThePageAPassword) {
   EXPECT_EQ(daemon.get("/api/v1/status").status, 200);
 }
 
+// As the page does, so that the password itself is not on the wire.
+TEST(Settings, GiveThePageAPasswordByItsHash) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const auto set = [&](const json& body) {
+    return request(daemon.port(), "PUT", settings_path + "/password", body.dump()).status;
+  };
+  const std::string hash = digest_hash("octurn", "Octurn", "open sesame");
+  EXPECT_EQ(set({{"hash", "open sesame"}}), 400);
+  EXPECT_EQ(set({{"hash", hash.substr(1)}}), 400);
+  EXPECT_EQ(set({{"hash", hash + "\nother:Octurn:" + hash}}), 400);
+  EXPECT_EQ(set({{"hash", hash}, {"password", "open sesame"}}), 400);
+  EXPECT_EQ(set({{"hash", nullptr}}), 400);
+  ASSERT_EQ(daemon.get("/api/v1/status").status, 200);
+  ASSERT_EQ(set({{"hash", hash}}), 200);
+  const Reply locked = daemon.get("/api/v1/status");
+  ASSERT_EQ(locked.status, 401);
+  const std::string nonce = quoted_field(locked.header("WWW-Authenticate"), "nonce");
+  const std::string proof = proof_of("open sesame", nonce, {.target = "/api/v1/status"});
+  EXPECT_EQ(daemon.get("/api/v1/status", {{"Authorization", proof}}).status, 200);
+}
+
 }  // namespace
 }  // namespace octurn

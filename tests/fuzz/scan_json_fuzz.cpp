@@ -1,28 +1,18 @@
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
-#include <span>
 #include <string>
-#include <string_view>
 
-#include "octurn/error.hpp"
-#include "octurn/reconstruct.hpp"
-#include "octurn/scan_folder.hpp"
+#include "fuzz/small_models.hpp"
 
 // Any text is refused by an Error of one line, or gives a scan with the properties that
 // octurn/scan_folder.hpp promises. From a small one a model is made, by depth images of all depths.
 
 namespace {
 
-void require(bool promise) {
-  if (!promise) {
-    std::abort();
-  }
-}
+using octurn::require;
 
 void check_file(const std::string& file) {
   const std::filesystem::path there = ("/scan" / std::filesystem::path(file)).lexically_normal();
@@ -64,9 +54,6 @@ void check(const octurn::Scan& scan) {
   }
 }
 
-constexpr int max_pixels = 32 * 32;  // so that a model takes milliseconds
-constexpr std::size_t max_shots = 3;
-
 /// A depth image of the scan's size: a tilted plane of all depths, with some pixels that lack one.
 octurn::DepthFrame frame_of(const octurn::Intrinsics& lens, std::size_t shot) {
   octurn::DepthFrame frame{.width = lens.width, .height = lens.height};
@@ -82,31 +69,16 @@ octurn::DepthFrame frame_of(const octurn::Intrinsics& lens, std::size_t shot) {
 }
 
 void reconstruct(const octurn::Scan& scan) {
-  if (scan.laser || scan.intrinsics.width * scan.intrinsics.height > max_pixels ||
-      scan.shots.size() > max_shots) {
+  if (scan.laser || !is_small(scan)) {
     return;
   }
-  for (const octurn::Method method : {octurn::Method::solid, octurn::Method::intersection}) {
-    const octurn::ReconstructOptions options{.method = method,
-                                             .leaf_size = 1.0 / 64,
-                                             .clip = model_clip(scan),
-                                             .placements = placements(scan)};
-    const auto reconstruction = octurn::make_reconstructor(options);
-    for (std::size_t i = 0; i < scan.shots.size(); ++i) {
-      const octurn::Shot& shot = scan.shots[i];
-      reconstruction->add({.frame = frame_of(scan.intrinsics, i),
+  make_models(scan, {.count = scan.shots.size(), .read = [&](std::size_t i) {
+                       return octurn::Snapshot{
+                           .frame = frame_of(scan.intrinsics, i),
                            .intrinsics = scan.intrinsics,
-                           .object_from_sensor = model_pose(scan, shot),
-                           .pose = shot.pose});
-    }
-    reconstruction->surface({}, [](std::span<const octurn::Facet> facets) {
-      for (const octurn::Facet& facet : facets) {
-        for (const std::array<float, 3> corner : facet.corners) {
-          require(std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]));
-        }
-      }
-    });
-  }
+                           .object_from_sensor = model_pose(scan, scan.shots[i]),
+                           .pose = scan.shots[i].pose};
+                     }});
 }
 
 }  // namespace
@@ -117,7 +89,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     check(scan);
     reconstruct(scan);
   } catch (const octurn::Error& error) {
-    require(std::string_view(error.what()).find('\n') == std::string_view::npos);
+    require_one_line(error);
   }
   return 0;
 }

@@ -1,6 +1,7 @@
 // Requests about the scanner's settings and its turntable. API.md describes the responses.
 
 import {json, sending} from './api.js';
+import {md5} from '../base/md5.js';
 
 /**
  * @typedef {Object} SettingSchema  JSON schema of one setting
@@ -61,4 +62,5 @@ export const changeSettings = (change) => json('settings', sending('PATCH', chan
 export const restoreSettings = (backup) => json('settings/backup', {...sending('POST'), body: backup});
 
 /** @param {string | null} password  null removes the password @returns {Promise<Configuration>} */
-export const setPassword = (password) => json('settings/password', sending('PUT', {password}));
+export const setPassword = (password) => json('settings/password',
+    sending('PUT', password === null ? {password} : {hash: md5(`octurn:Octurn:${password}`)}));

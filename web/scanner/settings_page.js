@@ -222,7 +222,8 @@ function preparePassword() {
   const input = element('page-password');
   element('password-card').addEventListener('submit', (/** @type {Event} */ event) => {
     event.preventDefault();
-    input.value === '' ? setText(element('password-complaint'), text('settings.password-missing')) : setPassword(input.value);
+    const bytes = new TextEncoder().encode(input.value).length;
+    bytes < 8 || bytes > 100 ? setText(element('password-complaint'), text('settings.password-length')) : setPassword(input.value);
   });
   element('password-remove').addEventListener('click', () => setPassword(null));
   element('password-show').addEventListener('click', () => {

@@ -805,7 +805,7 @@ export const texts = {
   'settings.password-everybody': 'Alle in diesem Netz dürfen den Scanner benutzen.',
   'settings.password-page': 'Die Seite verlangt ein Passwort.',
   'settings.password-file': 'Die Seite verlangt das Passwort, das die Karte oder octurn.json vorgibt.',
-  'settings.password-missing': 'Ein Passwort eingeben.',
+  'settings.password-length': '8 bis 100 Buchstaben, Ziffern und Zeichen verwenden.',
   'settings.turntable': 'Drehtisch',
   'settings.turntable-about': 'Eine Umdrehung des Tellers hat {steps} Schritte.',
   'settings.camera': 'Kamera',

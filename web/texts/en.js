@@ -824,7 +824,7 @@ export const texts = {
   'settings.password-everybody': 'Everybody in this network may use the scanner.',
   'settings.password-page': 'The page asks for a password.',
   'settings.password-file': 'The page asks for the password that the card, or octurn.json, has set.',
-  'settings.password-missing': 'Enter a password.',
+  'settings.password-length': 'Use 8 to 100 letters, digits and signs.',
   'settings.turntable': 'Turntable',
   'settings.turntable-about': 'The platform makes a turn of {steps} steps.',
   'settings.camera': 'Camera',

@@ -805,7 +805,7 @@ export const texts = {
   'settings.password-everybody': 'Todos en esta red pueden usar el escáner.',
   'settings.password-page': 'La página pide una contraseña.',
   'settings.password-file': 'La página pide la contraseña que ha fijado la tarjeta, u octurn.json.',
-  'settings.password-missing': 'Escribir una contraseña.',
+  'settings.password-length': 'Usar de 8 a 100 letras, cifras y signos.',
   'settings.turntable': 'Plato giratorio',
   'settings.turntable-about': 'El plato da una vuelta en {steps} pasos.',
   'settings.camera': 'Cámara',

@@ -805,7 +805,7 @@ export const texts = {
   'settings.password-everybody': 'Tout le monde dans ce réseau peut utiliser le scanner.',
   'settings.password-page': 'La page demande un mot de passe.',
   'settings.password-file': 'La page demande le mot de passe que la carte, ou octurn.json, a fixé.',
-  'settings.password-missing': 'Écrire un mot de passe.',
+  'settings.password-length': 'Utiliser de 8 à 100 lettres, chiffres et signes.',
   'settings.turntable': 'Plateau tournant',
   'settings.turntable-about': 'Un tour du plateau fait {steps} pas.',
   'settings.camera': 'Caméra',

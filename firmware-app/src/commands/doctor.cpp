@@ -157,9 +157,11 @@ bool doctor(const DoctorArguments& arguments) {
     std::ranges::move(check_motion(input, signal.token()), std::back_inserter(findings));
   }
   if (arguments.zip) {
-    write_file(*arguments.zip,
-               make_zip(make_diagnostics(input, settings.config(), findings, signal.token()),
-                        std::chrono::system_clock::now()));
+    const auto files = make_diagnostics(input, settings.config(), findings, signal.token());
+    if (signal.token().stop_requested()) {
+      throw_stopped("no archive was written");
+    }
+    write_file(*arguments.zip, make_zip(files, std::chrono::system_clock::now()));
   }
   write_standard_output(arguments.json ? to_json(findings).dump() + "\n" : table_text(findings));
   return overall_state(findings) != Finding::State::fault;

@@ -21,10 +21,19 @@ json to_value(const std::string& text) {
   return value.is_discarded() || value.is_structured() ? json(text) : value;
 }
 
+/// Whether a text is UTF-8, as JSON's are.
+bool is_utf8(const std::string& text) {
+  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)) == text;
+}
+
 /// Converts `turntable.gear_ratio=4` to `{"turntable": {"gear_ratio": 4}}`; a key may stand deeper,
 /// as `laser.left.line`.
 /// @throws Error "bad-settings"
 json to_change(const std::string& assignment) {
+  if (!is_utf8(assignment)) {
+    throw Error(ErrorCode::bad_settings, "a setting's text is not UTF-8",
+                "Save its file as UTF-8.");
+  }
   const std::size_t equals = assignment.find('=');
   if (equals == std::string::npos) {
     throw Error(ErrorCode::bad_settings, "\"" + assignment + "\" is no setting: must be KEY=VALUE");

@@ -54,7 +54,7 @@ bool asks_to_keep(const mg_request_info& info) {
   const std::string_view method = info.request_method;
   const auto headers =
       std::span(info.http_headers).first(static_cast<std::size_t>(info.num_headers));
-  // civetweb takes a length that is no number for 0, and the first of two.
+  // civetweb takes a length that is no number for 0, and the first of two: see expect_clear_length.
   const bool has_body = std::ranges::any_of(headers, [](const mg_header& header) {
     return same_token(header.name, "Transfer-Encoding") ||
            (same_token(header.name, "Content-Length") && std::string_view(header.value) != "0");
@@ -131,6 +131,23 @@ Request Exchange::head() {
     request.headers.emplace_back(header.name, header.value);
   }
   return request;
+}
+
+void Exchange::expect_clear_length() const {
+  const mg_request_info& info = *mg_get_request_info(&connection_);
+  const auto headers =
+      std::span(info.http_headers).first(static_cast<std::size_t>(info.num_headers));
+  int lengths = 0;
+  for (const mg_header& header : headers) {
+    if (same_token(header.name, "Content-Length")) {
+      const std::string_view value = header.value;
+      ++lengths;
+      if (lengths > 1 || value.find_first_not_of("0123456789") != std::string_view::npos) {
+        throw Error(ErrorCode::bad_request, "the length of the body is in doubt",
+                    "Send one header Content-Length, a number.");
+      }
+    }
+  }
 }
 
 /// @return bytes; 0 at the end; negative if the body is malformed

@@ -25,6 +25,10 @@ class Exchange {
   /// Host header (RFC 9112, section 3.2.2).
   Request head();
 
+  /// @throws Error "bad-request"  if a proxy before the server may take another length of the body:
+  ///                              it is no number, or said twice
+  void expect_clear_length() const;
+
   /// The whole body.
   /// @throws Error "too-large", "too-slow"; "cut-short", "bad-request" if it is not what was
   /// announced

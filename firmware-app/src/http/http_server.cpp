@@ -83,12 +83,13 @@ std::optional<Response> refusal(mg_connection& connection, const Request& reques
 
 /// The answer to a request whose head is read.
 Response answer_to(Request& request, Exchange& exchange, const HttpServer::Answer& answer) {
-  if (is_upload(request)) {
-    request.upload = exchange.upload();
-    return answer(request);
-  }
   try {
-    request.body = exchange.read_body();
+    exchange.expect_clear_length();
+    if (is_upload(request)) {
+      request.upload = exchange.upload();
+    } else {
+      request.body = exchange.read_body();
+    }
   } catch (const Error& error) {
     return problem({.code = error.code(), .detail = error.what(), .hint = error.hint()});
   }
@@ -127,11 +128,32 @@ int answer_error(mg_connection* connection, int /*status*/, const char* message)
   if (ConnectionGuard* const guard = to_service(connection).wait_for_guard()) {
     Exchange(*connection, *guard)
         .send("GET", problem({.code = ErrorCode::bad_request, .detail = message, .hint = ""}));
+    mg_set_user_connection_data(connection, guard);  // not null: it is answered
   }
   return 0;
 } catch (const std::exception& error) {
   log::error("http", std::string("a refusal has failed: ") + error.what());
   return 0;
+}
+
+/// Answers a request for which civetweb calls nothing: its target is `*`, or a URL whose port is
+/// not this server's.
+void answer_foreign_target(const mg_connection* connection) noexcept try {
+  const mg_request_info* const info = mg_get_request_info(connection);
+  if (info == nullptr || info->request_uri == nullptr || info->local_uri != nullptr ||
+      mg_get_user_connection_data(connection) != nullptr) {
+    return;
+  }
+  if (ConnectionGuard* const guard = to_service(connection).wait_for_guard()) {
+    const std::string target = info->request_uri;
+    const bool is_url = target.find("://") != std::string::npos;
+    Exchange(const_cast<mg_connection&>(*connection), *guard)
+        .send("GET", problem({.code = is_url ? ErrorCode::wrong_host : ErrorCode::bad_request,
+                              .detail = "the request is for " + target,
+                              .hint = "Ask for a path, such as /api/v1/status."}));
+  }
+} catch (const std::exception& error) {
+  log::error("http", std::string("a refusal has failed: ") + error.what());
 }
 
 int keep_message(const mg_connection* connection, const char* message) noexcept {
@@ -166,6 +188,7 @@ mg_context* start_civetweb(const std::string& listening, const HttpOptions& opti
   callbacks.init_connection = take_up;
   callbacks.begin_request = answer_request;
   callbacks.http_error = answer_error;
+  callbacks.connection_close = answer_foreign_target;
   callbacks.log_message = keep_message;
   mg_init_library(0);
   std::array<char, 256> reason{};

@@ -35,7 +35,15 @@ void write_password_file(const std::filesystem::path& file, const std::string& p
     throw Error(ErrorCode::bad_password, "the password contains the character U+0000",
                 "Use letters, digits and signs.");
   }
-  write_file(file, line_begin() + digest_hash(page_user, page_realm, password) + "\n", 0600);
+  write_password_hash(file, digest_hash(page_user, page_realm, password));
+}
+
+void write_password_hash(const std::filesystem::path& file, const std::string& hash) {
+  if (!is_hash(hash)) {
+    throw Error(ErrorCode::bad_password, "the password's hash is no MD5",
+                "It needs 32 digits, 0 to 9 and a to f.");
+  }
+  write_file(file, line_begin() + hash + "\n", 0600);
 }
 
 std::optional<std::string> read_password_hash(const std::filesystem::path& file) try {

@@ -17,6 +17,10 @@ inline constexpr const char* page_user = "octurn";
 /// "write-failed"
 void write_password_file(const std::filesystem::path& file, const std::string& password);
 
+/// Writes the file of a password whose `digest_hash` is given.
+/// @throws Error "bad-password" if that is no 32 lower-case hexadecimal digits; "write-failed"
+void write_password_hash(const std::filesystem::path& file, const std::string& hash);
+
 /// The `digest_hash` of the password. Nothing if the file cannot be read, or does not have the
 /// user.
 std::optional<std::string> read_password_hash(const std::filesystem::path& file);

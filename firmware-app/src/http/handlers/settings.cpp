@@ -3,6 +3,7 @@
 #include <chrono>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "http/file_response.hpp"
 #include "http/json_body.hpp"
@@ -100,13 +101,16 @@ Response restore_backup(App& app, const Request& request) {
 Response set_page_password(App& app, const Request& request) {
   const json body = parse_body(request);
   JsonObject keys(body, ErrorCode::bad_settings, "");
-  const JsonValue password = keys.at("password");
+  const std::optional<std::string> hash = keys.text("hash");
+  const auto password = hash ? std::optional<JsonValue>() : keys.at("password");
   keys.refuse_unread();
   const std::filesystem::path file = own_password_file(app.settings.config());
-  if (password.json().is_null()) {
+  if (hash) {
+    write_password_hash(file, *hash);
+  } else if (password->json().is_null()) {
     std::filesystem::remove(file);
   } else {
-    write_password_file(file, password.text());
+    write_password_file(file, password->text());
   }
   log::info("settings", "the page's password was changed");
   return send_settings(app);

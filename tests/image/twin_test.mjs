@@ -14,6 +14,13 @@ const say = teller('twin');
 
 const lateOf = ({late_pulses: late}) => `${late} of ${stepsPerTurn} pulses late`;
 
+/** What the packets in flight bridged. @returns {Promise<string>} */
+async function delaysOf(twin) {
+  const {count, half, most, longest} = await twin.sensor.delays();
+  const ms = (time) => `${time.toFixed(1)} ms`;
+  return `${count} transfers submitted again after at most ${ms(half)} (half), ${ms(most)} (99 of 100) and ${ms(longest)} (all)`;
+}
+
 /** @returns {Promise<string>} the scan's path */
 async function testScan(twin) {
   const scan = await twin.startScan({snapshots: stops, frames: 3, leaf_size_mm: 2});
@@ -25,6 +32,7 @@ async function testScan(twin) {
   say(`a scan of ${stops} snapshots in ${seconds.toFixed(1)} s, ${done.seconds_elapsed.toFixed(1)} s by the scanner's clock: ` +
     `${lateOf(done)}, ${sent} frames, ${damaged} of them damaged; the daemon's verdict: ${done.model.quality.verdict}`);
   require(pulses === stepsPerTurn && position === stepsPerTurn, `after a turn of ${stepsPerTurn} steps the platform is at ${position}`);
+  say(await delaysOf(twin));
   say(`its model: ${await twin.checkModel(scan)}`);
   return scan;
 }
@@ -43,7 +51,7 @@ async function testBusyScan(twin, model) {
   const [done] = await Promise.all([twin.finishes(scan).finally(() => {
     goesOn = false;
   }), download(), download()]);
-  say(`a scan while a model was downloaded ${downloads} times: ${lateOf(done)}`);
+  say(`a scan while a model was downloaded ${downloads} times: ${lateOf(done)}; ${await delaysOf(twin)}`);
   require(downloads > 0 && twin.turntable.position === position + stepsPerTurn, `the platform is at ${twin.turntable.position}`);
 }
 

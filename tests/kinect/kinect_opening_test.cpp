@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <chrono>
+
 #include "kinect/emulated/usb_parts.hpp"
 #include "kinect/plain_frames.hpp"
 #include "support/thrown_error.hpp"
@@ -9,12 +11,17 @@
 namespace octurn {
 namespace {
 
-/// Opens an emulated Kinect after a change, and expects depth.
+using Clock = std::chrono::steady_clock;
+constexpr auto longest_opening = std::chrono::seconds(5);
+
+/// Opens an emulated Kinect after a change, and expects depth before long.
 template <typename Change>
 void expect_depth(Change change) {
   KinectOnDesk desk({frame_of(700)});
   change(desk.kinect());
+  const auto begin = Clock::now();
   const auto sensor = open_sensor("kinect://");
+  EXPECT_LT(Clock::now() - begin, longest_opening);
   EXPECT_EQ(next_frame(*sensor).depth[0], std::lround(depth_of(700)));
   EXPECT_EQ(desk->audio_resets, 0);
 }
@@ -70,7 +77,9 @@ TEST(KinectOpening, GoesOnWithoutAMotorThatNeverAnswers) {
 TEST(KinectOpening, SaysThatTheCameraDoesNotAnswer) {
   KinectOnDesk desk({frame_of(700)});
   desk->camera_hangs = true;
+  const auto begin = Clock::now();
   const Error error = error_thrown_by([] { open_sensor("kinect://"); });
+  EXPECT_LT(Clock::now() - begin, longest_opening);
   EXPECT_NE(std::string(error.what()).find("does not answer"), std::string::npos) << error.what();
 }
 

@@ -253,6 +253,25 @@ TEST_F(UsbipDeviceTest, TakesAMicroframeForEachPacketAtItsSpeed) {
   EXPECT_EQ(*device_->due() - first, std::chrono::microseconds(32 * 250));
 }
 
+TEST_F(UsbipDeviceTest, CountsHowLateTransfersAreSubmittedAgain) {
+  using Clock = UsbipDevice::Clock;
+  EXPECT_TRUE(submit_packets(1, 8));
+  EXPECT_TRUE(submit_packets(2, 8));
+  const auto before = Clock::now();
+  EXPECT_TRUE(device_->complete(*device_->due()));
+  packets(8);
+  const auto completed = Clock::now();
+  while (Clock::now() < completed + std::chrono::milliseconds(2)) {
+  }
+  EXPECT_TRUE(device_->take_delays().empty());
+  EXPECT_TRUE(submit_packets(3, 8));
+  const auto delays = device_->take_delays();
+  ASSERT_EQ(delays.size(), 1);
+  EXPECT_GE(delays[0], std::chrono::milliseconds(2));
+  EXPECT_LE(delays[0], Clock::now() - before);
+  EXPECT_TRUE(device_->take_delays().empty());
+}
+
 TEST_F(UsbipDeviceTest, GivesBackAnUnlinkedTransferOnce) {
   EXPECT_TRUE(submit_packets(21, 8));
   EXPECT_TRUE(submit_packets(22, 8));

@@ -9,6 +9,9 @@
 //
 //   plug, unplug              attaches or detaches the Kinect
 //   frames                    answered by the numbers so far, "SENT DAMAGED"
+//   delays                    answered by those of the USB's transfers until they are submitted
+//                             again, since the last such order: "COUNT HALF NINETY_NINE LONGEST",
+//                             in us, where HALF and 99 of 100 took at most so long
 //   speed FACTOR              sets the frame rate as a multiple of 30 a second
 //   lose PERIOD FIRST COUNT   drops COUNT packets from FIRST on in every PERIOD-th frame; 1 0 0:
 //   none
@@ -27,6 +30,7 @@
 #include <cstdint>
 #include <deque>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <span>
@@ -235,10 +239,28 @@ class TwinKinect {
       kinect_.random_loss = share;
     } else if (verb == "frames") {
       return std::to_string(kinect_.frames_sent) + " " + std::to_string(kinect_.frames_damaged);
+    } else if (verb == "delays") {
+      return delays();
     } else {
       return "there is no such order";
     }
     return words ? "ok" : "a number is missing";
+  }
+
+  std::string delays() {
+    std::vector<UsbipDevice::Clock::duration> all;
+    for (const auto& device : devices_) {
+      std::ranges::copy(device->take_delays(), std::back_inserter(all));
+    }
+    std::ranges::sort(all);
+    std::string text = std::to_string(all.size());
+    for (const std::size_t percent : {50, 99, 100}) {
+      const auto delay = all.empty() ? UsbipDevice::Clock::duration::zero()
+                                     : all[(all.size() - 1) * percent / 100];
+      const auto delay_us = std::chrono::duration_cast<std::chrono::microseconds>(delay);
+      text += " " + std::to_string(delay_us.count());
+    }
+    return text;
   }
 
   /// Handles pending USB traffic, or waits for more or for an order.

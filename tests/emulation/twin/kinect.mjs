@@ -48,6 +48,14 @@ export class TwinKinect {
     return {sent, damaged};
   }
 
+  /** @returns {Promise<{count: number, half: number, most: number, longest: number}>} how many of its transfers were submitted again
+   * since the last call, and how long half of them, 99 of 100 and the last took until then, milliseconds */
+  async delays() {
+    const [count, ...times] = (await this.ask('delays')).split(' ').map(Number);
+    const [half, most, longest] = times.map((time) => time / 1000);
+    return {count, half, most, longest};
+  }
+
   async close() {
     this.#socket?.destroy();
     this.#server.close();

@@ -114,6 +114,7 @@ bool UsbipDevice::take_transfer(std::span<const std::uint8_t> header) {
   if (!receive(socket_.number(), descriptors)) {
     return false;
   }
+  count_delay();
   Transfer transfer = {.sequence = word(header, sequence), .endpoint = word(header, endpoint)};
   for (std::uint32_t i = 0; i < count; ++i) {
     transfer.packet_bytes.push_back(
@@ -127,9 +128,19 @@ bool UsbipDevice::take_transfer(std::span<const std::uint8_t> header) {
   return true;
 }
 
+void UsbipDevice::count_delay() {
+  if (!completed_.empty()) {
+    if (const auto since = completed_.front()) {
+      delays_.push_back(Clock::now() - *since);
+    }
+    completed_.pop_front();
+  }
+}
+
 bool UsbipDevice::unlink(std::uint32_t sequence, std::uint32_t of) {
   const auto found = std::ranges::find(waiting_, of, &Transfer::sequence);
   const bool waits = found != waiting_.end();
+  completed_.clear();  // the stream ends
   if (waits) {
     waiting_.erase(found);
   }
@@ -162,6 +173,7 @@ std::optional<UsbipDevice::Clock::time_point> UsbipDevice::due() const {
 
 bool UsbipDevice::complete(Clock::time_point now) {
   constexpr std::uint32_t depth_endpoint = 2;
+  const auto begin = Clock::now();
   const Transfer transfer = std::move(waiting_.front());
   waiting_.pop_front();
   over_ = std::max(transfer.due, now);
@@ -187,7 +199,16 @@ bool UsbipDevice::complete(Clock::time_point now) {
   }
   put_word(message, buffer_bytes, static_cast<std::uint32_t>(message.size() - header_bytes));
   message.insert(message.end(), descriptors.begin(), descriptors.end());
-  return send(message);
+  if (!send(message)) {
+    return false;
+  }
+  constexpr auto copying = std::chrono::milliseconds(1);
+  const auto end = Clock::now();
+  if (end - begin > copying) {  // a frame was made
+    std::ranges::fill(completed_, std::nullopt);
+  }
+  completed_.push_back(end);
+  return true;
 }
 
 bool UsbipDevice::send(std::span<const std::uint8_t> bytes) {

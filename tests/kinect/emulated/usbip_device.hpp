@@ -5,6 +5,7 @@
 #include <deque>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "file_descriptor.hpp"
@@ -42,6 +43,11 @@ class UsbipDevice {
   /// @return false if the peer closed
   bool complete(Clock::time_point now);
 
+  /// How long after each completed transfer the peer submitted it again, since the last call: what
+  /// transfers in flight have to bridge. Those are left out whose submission a frame that was made
+  /// meanwhile has kept waiting here.
+  std::vector<Clock::duration> take_delays() { return std::exchange(delays_, {}); }
+
  private:
   /// A pending isochronous transfer.
   struct Transfer {
@@ -52,6 +58,7 @@ class UsbipDevice {
   };
 
   bool take_transfer(std::span<const std::uint8_t> header);
+  void count_delay();
   bool unlink(std::uint32_t sequence, std::uint32_t unlinked);
   bool answer_control(std::uint32_t sequence, const UsbSetup& setup,
                       std::vector<std::uint8_t> data);
@@ -63,6 +70,8 @@ class UsbipDevice {
   FileDescriptor socket_;
   std::deque<Transfer> waiting_ = {};
   Clock::time_point over_ = {};  // end of the last completed transfer
+  std::deque<std::optional<Clock::time_point>> completed_ = {};  // and not submitted again
+  std::vector<Clock::duration> delays_ = {};
 };
 
 }  // namespace octurn

@@ -254,7 +254,7 @@ class TwinKinect {
     }
     std::ranges::sort(all);
     std::string text = std::to_string(all.size());
-    for (const std::size_t percent : {50, 99, 100}) {
+    for (const std::size_t percent : {50U, 99U, 100U}) {
       const auto delay = all.empty() ? UsbipDevice::Clock::duration::zero()
                                      : all[(all.size() - 1) * percent / 100];
       const auto delay_us = std::chrono::duration_cast<std::chrono::microseconds>(delay);

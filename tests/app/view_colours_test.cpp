@@ -113,5 +113,29 @@ TEST_F(ViewColours, EndWhenTheyAreStopped) {
   EXPECT_THROW(view_colours(model(), ball_scan(2), stop.get_token()), Stopped);
 }
 
+/// A triangle that faces the sensor, and a snapshot that sees it 20 mm too far away.
+std::vector<Rgb> colours_at(double distance) {
+  const TemporaryFolder folder;
+  const auto corner = [distance](double x, double y) {
+    return std::array{static_cast<float>(mm_from_metres(x)), static_cast<float>(mm_from_metres(y)),
+                      static_cast<float>(mm_from_metres(distance))};
+  };
+  const std::vector<Facet> facets{{.corners = {corner(0, 0), corner(0, 0.05), corner(0.05, 0)}}};
+  put(folder.path() / "Scan.stl", stl_text(facets));
+  const auto depth = static_cast<std::uint16_t>(std::lround((distance + 0.02) / lens.depth_unit));
+  const DepthFrame frame{.width = lens.width,
+                         .height = lens.height,
+                         .depth = std::vector<std::uint16_t>(std::size_t{640} * 480, depth)};
+  return view_colours(FacetFile(folder.path() / "Scan.stl"),
+                      {.count = 1, .read = [frame](std::size_t) {
+                         return Snapshot{.frame = frame, .intrinsics = lens};
+                       }});
+}
+
+TEST(ViewColoursOfASpace, TakeTheNoiseAtItsDistance) {
+  EXPECT_EQ(colours_at(0.75), std::vector<Rgb>(3, colours_of_views[0]));
+  EXPECT_EQ(colours_at(3), std::vector<Rgb>(3, colours_of_views[1]));
+}
+
 }  // namespace
 }  // namespace octurn

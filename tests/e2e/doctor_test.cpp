@@ -35,7 +35,8 @@ void expect_complete(const json& report) {
 
 TEST(DoctorCommand, ChecksTheSimulatedRig) {
   const TemporaryFolder folder;
-  Program doctor({octurn_program(), "doctor", "--simulate", "--json", "--data", folder.path()});
+  Program doctor({octurn_program(), "doctor", "--simulate", "--simulate-unit", "0", "--json",
+                  "--data", folder.path()});
   const int status = doctor.wait();
   const json report = json::parse(doctor.output(), nullptr, false);
   ASSERT_TRUE(report.is_object()) << doctor.output() << doctor.errors();

@@ -1171,6 +1171,8 @@ export const said = {
   'this scan was begun with another sensor: {}': 'dieser Scan wurde mit einem anderen Sensor begonnen: {}',
   'Plug in the one that it was begun with.': 'Den einstecken, mit dem er begonnen wurde.',
   'a scan is running, or another model is being built': 'ein Scan läuft, oder ein anderes Modell wird gebaut',
+  'the scan has no depth images to count': 'dieser Scan hat keine Tiefenbilder zum Zählen',
+  'Only a scan by a depth sensor has them.': 'Nur ein Scan mit einem Tiefensensor hat sie.',
   'this scan has no pictures in colour': 'dieser Scan hat keine farbigen Bilder',
   'Only a scan by laser line has them, if its camera sees colours.': 'Die hat nur ein Scan mit Laserlinien, dessen Kamera Farben sieht.',
   'Build the model with larger leaves, or download it without colours.': 'Das Modell mit gröberem Detail bauen oder ohne Farben herunterladen.',

@@ -1171,6 +1171,8 @@ export const said = {
   'this scan was begun with another sensor: {}': 'este escaneo se empezó con otro sensor: {}',
   'Plug in the one that it was begun with.': 'Conectar aquel con el que se empezó.',
   'a scan is running, or another model is being built': 'hay un escaneo en curso, o se construye otro modelo',
+  'the scan has no depth images to count': 'este escaneo no tiene imágenes de profundidad que contar',
+  'Only a scan by a depth sensor has them.': 'Solo un escaneo con sensor de profundidad las tiene.',
   'this scan has no pictures in colour': 'este escaneo no tiene imágenes en color',
   'Only a scan by laser line has them, if its camera sees colours.': 'Solo las tiene un escaneo por línea láser cuya cámara ve colores.',
   'Build the model with larger leaves, or download it without colours.': 'Construir el modelo con un detalle más grueso, o descargarlo sin colores.',

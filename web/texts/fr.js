@@ -1171,6 +1171,8 @@ export const said = {
   'this scan was begun with another sensor: {}': 'cette numérisation a été commencée avec un autre capteur : {}',
   'Plug in the one that it was begun with.': 'Brancher celui avec lequel elle a commencé.',
   'a scan is running, or another model is being built': 'une numérisation est en cours, ou un autre modèle se construit',
+  'the scan has no depth images to count': 'cette numérisation n’a pas d’images de profondeur à compter',
+  'Only a scan by a depth sensor has them.': 'Seule une numérisation avec un capteur de profondeur en a.',
   'this scan has no pictures in colour': 'cette numérisation n’a pas d’images en couleur',
   'Only a scan by laser line has them, if its camera sees colours.': 'Seule une numérisation par ligne laser en a, si sa caméra voit les couleurs.',
   'Build the model with larger leaves, or download it without colours.': 'Construire le modèle avec un détail plus grossier, ou le télécharger sans couleurs.',

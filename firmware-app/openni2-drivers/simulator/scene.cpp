@@ -50,7 +50,7 @@ Scene Scene::of_wall(double distance, const SensorOptics& optics) {
 Scene::Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor,
              const SensorOptics& optics)
     : object_(std::move(object)),
-      optics_(optics),
+      view_(optics),
       camera_(pinhole_of(optics)),
       projector_(projector_beside(camera_)),
       camera_from_platform_(platform_from_sensor.inverse()),
@@ -77,7 +77,7 @@ InverseDepth Scene::lit_at(double angle) const {
       }
     }
   }
-  return as_seen_by(optics_, seen);
+  return view_.of(seen);
 }
 
 }  // namespace octurn

@@ -30,7 +30,7 @@ class Scene {
   /// @return false if it has this pose already
   bool set_object_pose(int pose) { return object_.set_pose(pose); }
 
-  const SensorOptics& optics() const { return optics_; }
+  const SensorOptics& optics() const { return view_.optics(); }
 
   /// What the sensor reports of the surfaces that the camera sees and the projector lights, 640 x
   /// 480; 0 where there is none.
@@ -43,7 +43,7 @@ class Scene {
         const SensorOptics& optics);
 
   PlacedObject object_;
-  SensorOptics optics_;
+  SensorView view_;
   Intrinsics camera_;
   Intrinsics projector_;
   Eigen::Isometry3d camera_from_platform_;

@@ -10,9 +10,9 @@
 namespace octurn {
 namespace {
 
-/// Pixels of the pinhole picture beyond each edge: k1 of -0.2 shows the corners 30 pixels further
-/// out.
-constexpr int beyond_picture = 32;
+/// Pixels of the pinhole picture beyond each edge: k1 of -0.18 and a principal point that is 16
+/// pixels off show the corners 46 pixels further out.
+constexpr int beyond_picture = 48;
 
 /// Inverts the distortion: the normalised coordinates of a pinhole camera that appear at `shown`.
 Eigen::Vector2d undistorted(const SensorOptics& optics, const Eigen::Vector2d& shown) {
@@ -27,12 +27,12 @@ Eigen::Vector2d undistorted(const SensorOptics& optics, const Eigen::Vector2d& s
 
 /// The inverse depth between pixels: of one surface it is affine, and at an edge the nearest
 /// pixel's.
-float between(const InverseDepth& picture, int width, double u, double v) {
-  const auto left = static_cast<int>(u);
-  const auto top = static_cast<int>(v);
+float between(const InverseDepth& picture, int width, const Eigen::Vector2f& place) {
+  const auto left = static_cast<int>(place.x());
+  const auto top = static_cast<int>(place.y());
   const float* corner = picture.data() + static_cast<std::ptrdiff_t>(top) * width + left;
-  const auto x = static_cast<float>(u - left);
-  const auto y = static_cast<float>(v - top);
+  const float x = place.x() - static_cast<float>(left);
+  const float y = place.y() - static_cast<float>(top);
   const auto [low, high] = std::minmax({corner[0], corner[1], corner[width], corner[width + 1]});
   if (low <= 0 || is_edge(low, high)) {
     return corner[(y < 0.5F ? 0 : width) + (x < 0.5F ? 0 : 1)];
@@ -74,27 +74,39 @@ Intrinsics pinhole_of(const SensorOptics& optics) {
           .cy = optics.cy + beyond};
 }
 
-InverseDepth as_seen_by(const SensorOptics& optics, const InverseDepth& pinhole) {
+SensorView::SensorView(const SensorOptics& optics) : optics_(optics) {
   if (optics == SensorOptics()) {
-    return pinhole;
+    return;
   }
   const Intrinsics picture = pinhole_of(optics);
-  InverseDepth seen;
-  seen.reserve(pixels(camera));
+  places_.reserve(pixels(camera));
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       const Eigen::Vector2d ray =
           undistorted(optics, {(u - optics.cx) / optics.fx, (v - optics.cy) / optics.fy});
-      const double column = ray.x() * picture.fx + picture.cx;
-      const double row = ray.y() * picture.fy + picture.cy;
-      const bool is_inside =
-          column >= 0 && row >= 0 && column < picture.width - 1 && row < picture.height - 1;
-      const float truth = is_inside ? between(pinhole, picture.width, column, row) : 0;
-      seen.push_back(truth > 0 ? std::max(0.0F, static_cast<float>(optics.depth_scale *
-                                                                       static_cast<double>(truth) -
-                                                                   optics.depth_offset_per_m))
-                               : 0.0F);
+      const Eigen::Vector2d place(ray.x() * picture.fx + picture.cx,
+                                  ray.y() * picture.fy + picture.cy);
+      places_.emplace_back(place.cast<float>());
     }
+  }
+}
+
+InverseDepth SensorView::of(const InverseDepth& pinhole) const {
+  if (places_.empty()) {
+    return pinhole;
+  }
+  const Intrinsics picture = pinhole_of(optics_);
+  const auto right = static_cast<float>(picture.width - 1);
+  const auto bottom = static_cast<float>(picture.height - 1);
+  const auto scale = static_cast<float>(optics_.depth_scale);
+  const auto offset = static_cast<float>(optics_.depth_offset_per_m);
+  InverseDepth seen;
+  seen.reserve(places_.size());
+  for (const Eigen::Vector2f& place : places_) {
+    const bool is_inside =
+        place.x() >= 0 && place.y() >= 0 && place.x() < right && place.y() < bottom;
+    const float truth = is_inside ? between(pinhole, picture.width, place) : 0;
+    seen.push_back(truth > 0 ? std::max(0.0F, scale * truth - offset) : 0.0F);
   }
   return seen;
 }

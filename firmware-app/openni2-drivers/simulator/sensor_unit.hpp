@@ -1,6 +1,8 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <vector>
 
 #include "octurn/snapshot.hpp"
 #include "simulator/rasterise.hpp"
@@ -15,13 +17,25 @@ namespace octurn {
 ///              Others are drawn at random from the spread of published ones
 SensorOptics optics_of_unit(std::uint32_t unit);
 
-/// The picture of a pinhole camera from which `as_seen_by` takes the sensor's own: that, and a
-/// margin for what distortion brings into view.
+/// The picture of a pinhole camera from which a `SensorView` takes the sensor's own: that, and
+/// a margin for what distortion brings into view.
 Intrinsics pinhole_of(const SensorOptics& optics);
 
-/// The inverse depths that a sensor with these optics reports, 640 x 480, of a surface that the
-/// pinhole camera sees. Between pixels of one surface they are interpolated.
-/// @param pinhole  the picture of `pinhole_of(optics)`
-InverseDepth as_seen_by(const SensorOptics& optics, const InverseDepth& pinhole);
+/// The view of a sensor with its own optics.
+class SensorView {
+ public:
+  explicit SensorView(const SensorOptics& optics);
+
+  const SensorOptics& optics() const { return optics_; }
+
+  /// The inverse depths that the sensor reports, 640 x 480, of a surface that the pinhole camera
+  /// sees. Between pixels of one surface they are interpolated.
+  /// @param pinhole  the picture of `pinhole_of(optics())`
+  InverseDepth of(const InverseDepth& pinhole) const;
+
+ private:
+  SensorOptics optics_;
+  std::vector<Eigen::Vector2f> places_;  // of the pixels in the pinhole picture; empty: the same
+};
 
 }  // namespace octurn

@@ -17,16 +17,25 @@ using Eigen::Vector3f;
 
 constexpr double min_view_cosine = 0.25;  // of incidence, 75 degrees
 // Metres: three sigma of a Kinect v1's noise at 0.75 m, and half a pixel on a surface that steep.
-constexpr double max_off = 0.005;
+// Noise and steps of depth grow with the square of the distance.
+constexpr double near_off = 0.005;
+constexpr double near_distance = 0.75;
+
+double max_off(double distance) {
+  const double ratio = std::max(1.0, distance / near_distance);
+  return near_off * ratio * ratio;
+}
 
 Vector3d metres_of(const Vertex& vertex) {
   return Eigen::Map<const Vector3f>(vertex.data()).cast<double>() * metres_from_mm(1);
 }
 
 /// The vertices' normals, weighted by the areas of their triangles.
-std::vector<Vector3f> normals_of(const FacetFile& facets, const VertexTable& table) {
+std::vector<Vector3f> normals_of(const FacetFile& facets, const VertexTable& table,
+                                 const std::stop_token& stop) {
   std::vector<Vector3f> normals(table.vertices().size(), Vector3f::Zero());
   facets.read([&](std::span<const Facet> block) {
+    throw_if_stopped(stop);
     for (const Facet& facet : block) {
       const auto corners = facet.corners;  // a copy: a facet's members are not aligned
       const Eigen::Map<const Vector3f> a(corners[0].data());
@@ -56,7 +65,7 @@ bool sees(const Snapshot& snapshot, const Vector3d& point, const Vector3d& norma
   const auto pixel = static_cast<std::size_t>(v) * static_cast<std::size_t>(lens.width) +
                      static_cast<std::size_t>(u);
   const std::uint16_t reading = snapshot.frame.depth[pixel];
-  return reading > 0 && std::abs(reading * lens.depth_unit - point.z()) < max_off;
+  return reading > 0 && std::abs(reading * lens.depth_unit - point.z()) < max_off(point.z());
 }
 
 }  // namespace
@@ -65,7 +74,7 @@ std::vector<Rgb> view_colours(const FacetFile& facets, const SnapshotSource& sna
                               const std::stop_token& stop) {
   const VertexTable table(facets);
   const std::span<const Vertex> vertices = table.vertices();
-  const std::vector<Vector3f> normals = normals_of(facets, table);
+  const std::vector<Vector3f> normals = normals_of(facets, table, stop);
   std::vector<std::uint8_t> views(vertices.size());
   for (std::size_t shot = 0; shot < snapshots.count; ++shot) {
     throw_if_stopped(stop);

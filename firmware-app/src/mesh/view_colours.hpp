@@ -22,8 +22,9 @@ inline constexpr std::array<Rgb, 6> colours_of_views{{
 }};
 
 /// Computes that colour for the vertices of a model's VertexTable. A snapshot saw a vertex if its
-/// reading there is within 5 mm of it, and the surface faces the sensor at less than 75 degrees.
-/// Memory is that of the table, about 16 bytes a vertex, and one snapshot.
+/// reading there is within 5 mm of it, beyond 0.75 m within more by the square of the distance, and
+/// the surface faces the sensor at less than 75 degrees. Memory is that of the table, 16 bytes a
+/// vertex more, and one snapshot.
 /// @param snapshots  of the model, by a depth sensor
 /// @throws Error "memory-limit", "read-failed"; as the source; Stopped
 std::vector<Rgb> view_colours(const FacetFile& facets, const SnapshotSource& snapshots,

@@ -89,6 +89,7 @@ class Run {
   FittingReconstruction reconstruction_;
   PoseChecks check_;                        // of the snapshots added to the reconstruction
   int added_ = 0;                           // snapshots added to the reconstruction
+  int resumed_ = 0;                         // snapshots that an earlier attempt took
   bool has_tried_preview_ = false;          // to solve the pose for the preview
   std::optional<SolvedPose> preview_pose_;  // until `calibrate`, in place of the configured one
   std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
@@ -148,6 +149,7 @@ bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
 /// Adds the stored snapshots of a resumed scan, in their order, while the platform turns.
 void Run::resume() {
   expect_same_rig(scan_, settings_, rig_);
+  resumed_ = done();
   if (!scan_.laser) {
     const SnapshotSource stored = checked();
     first_readings_ = readings_in(stored.read(0).frame);
@@ -261,8 +263,9 @@ void Run::add(Add add_to) {
   }
   added_ = done();
   const bool is_preview = done() < settings_.snapshots;  // else the model follows
-  const bool solves = is_preview && !has_tried_preview_ && !scan_.laser && !scan_.solved &&
-                      settings_.pose != PoseSource::configured &&
+  // While a device fails, attempts follow each other: none solves before it has taken a stop.
+  const bool solves = is_preview && done() > resumed_ && !has_tried_preview_ && !scan_.laser &&
+                      !scan_.solved && settings_.pose != PoseSource::configured &&
                       done() >= std::max(preview_share * settings_.snapshots, preview_stops);
   adding_ = std::async(std::launch::async, [=, so_far = scan_, this, add = std::move(add_to)] {
     add();

@@ -11,8 +11,8 @@ namespace octurn {
 namespace {
 
 /// Pixels of the pinhole picture beyond each edge: k1 of -0.18 and a principal point that is 16
-/// pixels off show the corners 46 pixels further out.
-constexpr int beyond_picture = 48;
+/// pixels off show the corners 50 pixels further out.
+constexpr int beyond_picture = 56;
 
 /// Inverts the distortion: the normalised coordinates of a pinhole camera that appear at `shown`.
 Eigen::Vector2d undistorted(const SensorOptics& optics, const Eigen::Vector2d& shown) {

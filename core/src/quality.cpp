@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "calibrate/missing_part.hpp"
@@ -35,7 +37,13 @@ constexpr const char* unseen_hint =
     "Dull what is black, shiny or clear with chalk or dry shampoo; lay the object another way, and "
     "scan it again.";
 
-constexpr double max_fill = 0.03;  // metres from anything that was seen
+constexpr double max_fill = 0.03;        // metres from anything that was seen
+constexpr double max_unseen_top = 0.01;  // metres: a Kinect loses 2 to 4 pixels at an edge
+constexpr double min_hollow = 0.015;     // metres, depth of a filled hollow
+constexpr std::size_t min_hollow_places = 8;
+constexpr std::size_t most_stops_of_few = 3;
+// An object that is mostly below the box has this many times as many pixels there as inside.
+constexpr double mostly_low = 3;
 
 constexpr double max_cut_pixels = 6;  // a depth image: 7 mm at 0.65 m
 constexpr double max_dropped = 0.01;  // of the model's volume
@@ -62,6 +70,45 @@ double focal_sigma(const Scan& scan, const std::optional<SolvedPose>& solved,
   return optics && optics->sigma.fx > 0 ? optics->sigma.fx / used : data_sheet_focal_sigma;
 }
 
+/// Where in the chain from the turn to the model a reason belongs. What is earlier causes what is
+/// later.
+enum class Link { platform, turn, pose, sight, model };
+
+Link find_link(const QualityReason& reason) {
+  constexpr std::array<std::pair<std::string_view, Link>, 10> links{
+      {{"empty", Link::platform},
+       {"too-low", Link::platform},
+       {"turntable", Link::turn},
+       {"alike", Link::turn},
+       {"top-unseen", Link::sight},
+       {"little-seen", Link::sight},
+       {"filled-far", Link::sight},
+       {"cut-by-box", Link::sight},
+       {"parts-dropped", Link::model},
+       {"part-missing", Link::model}}};
+  if (reason.code == "moved") {  // found by the calibration, or by what other stops saw through
+    return reason.parameters.contains("empty_share") ? Link::sight : Link::turn;
+  }
+  const auto found = std::ranges::find(links, reason.code, &decltype(links)::value_type::first);
+  return found == links.end() ? Link::pose : found->second;
+}
+
+/// Whether a reason follows from another, whose cure cures both. A wrong pose hides no surface.
+bool follows(Link reason, Link cause) {
+  return cause < reason && (cause < Link::pose || reason == Link::model);
+}
+
+/// Leaves out what follows from another reason.
+void keep_causes(Quality& quality) {
+  std::vector<Link> links;
+  std::ranges::transform(quality.reasons, std::back_inserter(links), find_link);
+  std::erase_if(quality.reasons, [&](const QualityReason& reason) {
+    return std::ranges::any_of(links,
+                               [&](Link cause) { return follows(find_link(reason), cause); });
+  });
+  std::ranges::stable_sort(quality.reasons, {}, find_link);
+}
+
 /// Collects reasons; the worst of them is the verdict.
 class Judgement {
  public:
@@ -69,7 +116,10 @@ class Judgement {
     quality_.verdict = std::max(quality_.verdict, verdict);
     quality_.reasons.push_back(std::move(reason));
   }
-  Quality take() { return std::move(quality_); }
+  Quality take() {
+    keep_causes(quality_);
+    return std::move(quality_);
+  }
 
  private:
   Quality quality_ = {};
@@ -87,7 +137,8 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
                    .places = scan.disagreeing_places});
   }
   const auto odd = std::ranges::max_element(scan.contradicted);
-  if (odd != scan.contradicted.end() && *odd > max_contradicted) {
+  if (scan.disagreement <= look_disagreement * scale && odd != scan.contradicted.end() &&
+      *odd > max_contradicted) {
     judgement.add(
         Verdict::look,
         {.code = "moved",
@@ -100,21 +151,23 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
   }
 }
 
+/// What a calibration found that the model suffers from.
 void judge_findings(Judgement& judgement, std::span<const CalibrationFinding> findings) {
+  constexpr std::array<std::string_view, 5> of_the_turntable{"slip", "turn-not-whole", "still",
+                                                             "turn-ratio", "turn-unknown"};
+  constexpr std::array<std::string_view, 5> others{"moved", "focal-length", "optics", "alike",
+                                                   "stops-disagree"};
   for (const CalibrationFinding& finding : findings) {
-    if (finding.code == "moved" || finding.code == "focal-length" || finding.code == "optics") {
-      judgement.add(Verdict::look, {.code = finding.code,
-                                    .detail = finding.detail,
-                                    .hint = finding.hint,
-                                    .parameters = finding.parameters});
-    } else if (finding.code == "slip" || finding.code == "turn-not-whole" ||
-               finding.code == "still" || finding.code == "stops-disagree") {
-      judgement.add(finding.code == "still" ? Verdict::bad : Verdict::look,
-                    {.code = "stops-disagree",
-                     .detail = finding.detail,
-                     .hint = finding.hint,
-                     .parameters = finding.parameters});
+    const bool is_turntable = std::ranges::count(of_the_turntable, finding.code) > 0;
+    if (!is_turntable && std::ranges::count(others, finding.code) == 0) {
+      continue;
     }
+    const bool is_bad = is_turntable && finding.code != "slip" && finding.code != "turn-not-whole";
+    judgement.add(is_bad ? Verdict::bad : Verdict::look,
+                  {.code = is_turntable ? "turntable" : finding.code,
+                   .detail = finding.detail,
+                   .hint = finding.hint,
+                   .parameters = finding.parameters});
   }
 }
 
@@ -139,7 +192,8 @@ void judge_height(Judgement& judgement, const ScanFigures& scan, const ModelRepo
         Verdict::look,
         {.code = "floats",
          .detail = "the model begins " + mm_text(model.bottom, text_digits) + " above the platform",
-         .hint = "Look whether the box reaches down to the platform.",
+         .hint = "Dull the object's foot if it is black, shiny or clear; look whether the box "
+                 "reaches down to the platform.",
          .parameters = {{"bottom_mm", mm_from_metres(model.bottom)}}});
   }
 }
@@ -151,7 +205,8 @@ void judge_coverage(Judgement& judgement, const ScanFigures& scan, const ModelRe
         {.code = "little-seen",
          .detail = "the platform turned by " + degrees_text(scan.widest_gap, 0) +
                    " without a stop: nobody saw that side of the object",
-         .hint = "Scan a whole turn.",
+         .hint =
+             scan.stops > most_stops_of_few ? "Scan a whole turn." : "Scan with more snapshots.",
          .parameters = {{"gap_deg", degrees_from_radians(scan.widest_gap)}},
          .places = model.places.unseen});
   } else if (model.unseen_share > look_unseen) {
@@ -188,6 +243,60 @@ void judge_fill(Judgement& judgement, const ScanFigures& scan, const ModelReport
                    .hint = unseen_hint,
                    .parameters = {{"fill_mm", mm_from_metres(farthest)}},
                    .places = std::move(far_places)});
+  }
+}
+
+/// Reports a hole in the readings above the object, at most stops.
+void judge_top(Judgement& judgement, const ScanFigures& scan) {
+  if (scan.unseen_top > max_unseen_top) {
+    judgement.add(Verdict::look,
+                  {.code = "top-unseen",
+                   .detail = "the top was not seen: the sensor reads nothing in the " +
+                             mm_text(scan.unseen_top, 0) + " above the model",
+                   .hint = "Dull what is black, shiny or clear with chalk or dry shampoo.",
+                   .parameters = {{"unseen_mm", mm_from_metres(scan.unseen_top)}}});
+  }
+}
+
+/// The height to which an object was seen all around a place, metres; nothing if it was not, or if
+/// something was seen above the place.
+std::optional<double> find_rim(const ScanFigures& scan, const Eigen::Vector3d& place) {
+  constexpr double beside = 0.007;  // metres: not of the wall of a vessel
+  std::array<double, 8> highest{};
+  for (const Eigen::Vector3d& seen : scan.seen) {
+    const Eigen::Vector3d from_place = seen - place;
+    if (from_place.z() < min_hollow) {
+      continue;
+    }
+    if (from_place.head<2>().norm() < beside) {
+      return std::nullopt;
+    }
+    const double turn = std::atan2(from_place.y(), from_place.x()) / (2 * std::numbers::pi) + 0.5;
+    double& rim = highest[static_cast<std::size_t>(turn * 8) % 8];
+    rim = std::max(rim, from_place.z());
+  }
+  const double rim = *std::ranges::min_element(highest);
+  return rim > 0 ? std::optional(rim) : std::nullopt;
+}
+
+/// Mentions a deep hollow whose floor no stop saw: there the model is filled up.
+void judge_hollow(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
+  double depth = 0;
+  std::vector<Eigen::Vector3d> places;
+  for (const Eigen::Vector3d& place : model.places.unseen) {
+    if (const auto rim = find_rim(scan, place)) {
+      depth = std::max(depth, *rim);
+      places.push_back(place);
+    }
+  }
+  if (places.size() >= min_hollow_places) {
+    judgement.add(Verdict::good,
+                  {.code = "hollow-filled",
+                   .detail = "a hollow is filled up to " + mm_text(depth, 0) +
+                             " below its rim, since no stop saw its floor",
+                   .hint = "Tilt the sensor further down, or scan the object from another side.",
+                   .parameters = {{"hollow_mm", mm_from_metres(depth)}},
+                   .places = std::move(places)});
   }
 }
 
@@ -230,9 +339,12 @@ void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelRepor
     judgement.add(
         model.dropped.volume > model.volume ? Verdict::bad : Verdict::look,
         {.code = "parts-dropped",
-         .detail = std::to_string(model.dropped.count) + " parts, " +
-                   number_text("%.1f cm3 in all", cm3_from_m3(model.dropped.volume)) +
-                   ", were not joined to the model, and were dropped",
+         .detail =
+             (model.dropped.count == 1
+                  ? number_text("1 part, %.1f cm3, was", cm3_from_m3(model.dropped.volume))
+                  : std::to_string(model.dropped.count) + " parts, " +
+                        number_text("%.1f cm3 in all, were", cm3_from_m3(model.dropped.volume))) +
+             " not joined to the model, and dropped",
          .hint = "Scan one object at a time, or build the model of all parts.",
          .parameters = {{"parts", static_cast<double>(model.dropped.count)},
                         {"volume_cm3", cm3_from_m3(model.dropped.volume)}},
@@ -242,9 +354,22 @@ void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelRepor
   }
 }
 
+/// Reports an object that lies between the platform's noise and the box.
+void judge_low(Judgement& judgement, const ScanFigures& scan) {
+  judgement.add(Verdict::bad,
+                {.code = "too-low",
+                 .detail = "what lies on the platform is lower than the scanned space, which could "
+                           "begin " +
+                           mm_text(scan.noise_end, text_digits) + " above the platform",
+                 .hint = "Build the model again with a scanned space that begins lower.",
+                 .parameters = {{"noise_end_mm", mm_from_metres(scan.noise_end)}}});
+}
+
 /// Judges another pose of a model. Filled surface and dropped parts belong to no single pose.
-Quality judge_side(const ScanFigures& scan, const ModelReport& model) {
+/// @param scan  heights in its places are not above this pose's platform
+Quality judge_side(ScanFigures scan, const ModelReport& model) {
   Judgement judgement;
+  scan.noise_end = 0;
   judge_agreement(judgement, scan);
   judge_height(judgement, scan, {});
   if (scan.platform_height.value_or(0) <= look_height) {
@@ -294,7 +419,14 @@ std::optional<SizeError> expected_size_error(const Scan& scan, const Eigen::Vect
 Quality judge(const ScanFigures& scan, const ModelReport& model,
               std::span<const CalibrationFinding> findings) {
   Judgement judgement;
-  if (scan.object_pixels < min_object_pixels || model.volume + model.dropped.volume < min_volume) {
+  const bool is_empty =
+      scan.object_pixels < min_object_pixels || model.volume + model.dropped.volume < min_volume;
+  if (scan.low_pixels > min_object_pixels &&
+      (is_empty || scan.low_pixels > mostly_low * scan.object_pixels)) {
+    judge_low(judgement, scan);
+    return judgement.take();
+  }
+  if (is_empty) {
     judgement.add(Verdict::bad, {.code = "empty",
                                  .detail = "next to nothing stands on the platform",
                                  .hint = "Stand the object on the platform's middle."});
@@ -303,7 +435,9 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
   judge_agreement(judgement, scan);
   judge_findings(judgement, findings);
   judge_height(judgement, scan, model);
+  judge_top(judgement, scan);
   judge_coverage(judgement, scan, model);
+  judge_hollow(judgement, scan, model);
   if (scan.by_lines) {  // a depth sensor does not see below what overhangs
     judge_fill(judgement, scan, model);
   }
@@ -324,6 +458,7 @@ Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
   for (std::size_t i = 1; i < poses.size(); ++i) {
     add_reasons(quality, judge_side(poses[i], model), i + 1);
   }
+  keep_causes(quality);
   return quality;
 }
 

@@ -165,7 +165,7 @@ TEST_F(VerdictTest, SaysThatTheRigWasBumpedInMidScan) {
       "between stops 3 and 4 the sensor moved: the platform tilts by 0.9 degrees and sinks by "
       "1.8 mm as it sees it");
   EXPECT_EQ(moved[0]["hint"], "Fix the sensor and the platform, calibrate, and scan again.");
-  EXPECT_EQ(reasons(scan, "stops-disagree").size(), 1U) << scan;
+  EXPECT_TRUE(reasons(scan, "stops-disagree").empty()) << "it follows from the move: " << scan;
 }
 
 TEST_F(VerdictTest, SolvesNoPoseWhereTheRigWasBumpedByACentimetre) {

@@ -23,6 +23,7 @@ test('a reason leads to its cure', () => {
   const href = (code) => actionOf(code)?.href ?? null;
   assert.deepEqual(['stops-disagree', 'cut-by-box', 'part-missing', 'little-seen', 'something-new', undefined].map(href),
       ['#calibrate', '#build-again', '#calibrate', '#', null, null]);
+  assert.deepEqual(['turntable', 'too-low', 'alike', 'top-unseen'].map(href), ['#settings', '#build-again', '#calibrate', '#']);
 });
 
 test('what only a build can cure leads to the field of Build again, and the scanner’s hint is not said twice', () => {
@@ -66,6 +67,12 @@ test('what a calibration found is worded with its values, also where the verdict
   assert.equal(detailOf('moved', {min_shift_mm: 20, turn_deg: 12}), 'One more look at the first stop: the object moved by more than 20.0 mm and turned by 12.0°.');
   assert.equal(detailOf('stops-disagree', {stop: 5, off_deg: 1.83}), 'At stop 5 the platform stood 1.8° from where it should.');
   assert.equal(detailOf('stops-disagree', {stops: 8}), 'Each of 8 stops shows what the first one shows: the platform did not turn.');
+  assert.equal(detailOf('turntable', {stop: 5, off_deg: 1.83}), 'At stop 5 the platform stood 1.8° from where it should.');
+  assert.equal(detailOf('turntable', {stops: 8}), 'Each of 8 stops shows what the first one shows: the platform did not turn.');
+  for (const code of ['turntable', 'turn-ratio']) {
+    assert.equal(detailOf(code, {told_deg: 90, clockwise_deg: 90}), 'Where the platform should turn by 90.0° counter-clockwise, it turned clockwise by 90.0°.');
+    assert.equal(detailOf(code, {told_deg: 90, turned_deg: 45}), 'Where the platform should turn by 90.0°, it turned by 45.0°.');
+  }
   assert.equal(detailOf('stops-disagree', {turn_deg: 270, object_side: 2}), 'Side 2: A whole turn came out as 270.0°.');
   assert.equal(detailOf('focal-length', {shorter_share: 0.021, seen_px: 562.4, told_px: 574}),
       'The sensor’s focal length is 2.1% shorter than configured: 562 pixels instead of 574.');

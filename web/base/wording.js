@@ -32,8 +32,12 @@ const shown = (parameters) => Object.fromEntries(Object.entries(parameters).map(
 const keyOf = (code, parameters) => [code, ...Object.keys(parameters).sort()].join('.');
 
 /** Findings of a calibration that have another code in a verdict. */
-const sameAs = new Map([['stops-disagree.off_deg.stop', 'slip.off_deg.stop'],
-  ['stops-disagree.turn_deg', 'turn-not-whole.turn_deg'], ['stops-disagree.stops', 'still.stops']]);
+const turntable = new Map([['off_deg.stop', 'slip.off_deg.stop'], ['turn_deg', 'turn-not-whole.turn_deg'], ['stops', 'still.stops']]);
+const sameAs = new Map([
+  ...['stops-disagree', 'turntable'].flatMap((code) => [...turntable].map(([names, key]) => [`${code}.${names}`, key])),
+  ...['clockwise_deg.told_deg', 'told_deg.turned_deg'].map((names) => [`turn-ratio.${names}`, `turntable.${names}`]),
+  ['turn-unknown', 'turntable'],
+]);
 
 /** The text of a verdict's reason or a calibration's finding. @param {Said} reason */
 export function reasonText({code, detail, parameters = {}}) {

@@ -18,6 +18,8 @@ const flatten = {text: text('cure.flatten'), href: '#calibrate'};
 const wholeSpace = {text: text('cure.whole-space'), href: '#build-again', field: 'build-clip'};
 const allParts = {text: text('cure.all-parts'), href: '#build-again', field: 'build-parts'};
 const again = {text: text('cure.again'), href: '#'};
+const testTurn = {text: text('cure.test-turn'), href: '#settings'};
+const lowerSpace = {text: text('cure.lower-space'), href: '#build-again', field: 'build-clip'};
 
 /** @type {Record<string, Action>} */
 const actions = {
@@ -28,6 +30,11 @@ const actions = {
   'no-map': flatten,
   'cut-by-box': wholeSpace,
   'empty': again,
+  'too-low': lowerSpace,
+  'turntable': testTurn,
+  'alike': calibrate,
+  'top-unseen': again,
+  'hollow-filled': again,
   'moved': again,
   'little-seen': again,
   'filled-far': again,

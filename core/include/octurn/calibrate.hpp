@@ -33,7 +33,8 @@ struct CalibrationTurn {
 
 /// A fault of the rig or of the turn that a new pose does not cure.
 struct CalibrationFinding {
-  /// "slip", "turn-not-whole", "still", "wobble", "moved", "focal-length", "optics", "no-map"
+  /// "slip", "turn-not-whole", "still", "turn-ratio", "turn-unknown", "alike", "wobble", "moved",
+  /// "focal-length", "optics", "no-map"
   std::string code = {};
   std::string detail = {};           ///< what was found and its size, for people
   std::string hint = {};             ///< what to do about it
@@ -61,6 +62,9 @@ struct CalibrationReport {
   /// little of the object was seen.
   std::vector<double> stop_offsets = {};
   std::vector<CalibrationFinding> findings = {};
+  /// Radians: how far the platform had slipped at each stop. The pose is solved with the angles
+  /// that it thus had. Empty or 0 if it did not slip.
+  std::vector<double> slipped = {};
   /// What is known of the optics after the turn; nothing if it tells nothing of them.
   std::optional<SolvedOptics> optics = {};
   /// Whether they replace those with which the turn was read: they are far from them, or known far
@@ -68,7 +72,7 @@ struct CalibrationReport {
   bool optics_differ = false;
 
   /// Whether the configured pose is within three sigma of the solved one, or within 0.1 mm and 0.05
-  /// degrees, and the sensor's own optics hold.
+  /// degrees, and the sensor's own optics and the configured angles hold.
   bool confirms_told() const;
 };
 

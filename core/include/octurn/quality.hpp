@@ -30,8 +30,9 @@ std::string_view to_string(Verdict verdict);
 
 /// Why a model is not good.
 struct QualityReason {
-  /// "empty", "stops-disagree", "moved", "focal-length", "optics", "floats", "sunk", "little-seen",
-  /// "filled-far", "cut-by-box", "parts-dropped", "part-missing"
+  /// "empty", "too-low", "turntable", "alike", "stops-disagree", "moved", "focal-length", "optics",
+  /// "floats", "sunk", "top-unseen", "little-seen", "filled-far", "hollow-filled", "cut-by-box",
+  /// "parts-dropped", "part-missing"
   std::string code = {};
   std::string detail = {};     ///< what was found and its size, for people
   std::string hint = {};       ///< what to do about it
@@ -53,7 +54,8 @@ struct SizeError {
 /// The verdict on a model, and why.
 struct Quality {
   Verdict verdict = Verdict::good;
-  std::vector<QualityReason> reasons = {};  ///< in the order of `QualityReason::code`; none if good
+  /// Causes first; what follows from a cause is left out. Of a good model only "hollow-filled".
+  std::vector<QualityReason> reasons = {};
   std::optional<SizeError> size_error = {};
 
   bool operator==(const Quality&) const = default;
@@ -81,6 +83,11 @@ struct ScanFigures {
   /// Metres, object's frame: centres of 5 mm cells in which several stops saw the object.
   std::vector<Eigen::Vector3d> seen = {};
   bool by_lines = false;  ///< whether the stops saw lines of lasers
+  /// Mean number of pixels at a stop between the platform's noise and the box's bottom.
+  double low_pixels = 0;
+  double noise_end = 0;  ///< metres above z = 0: end of the platform's noise
+  /// Metres above the highest reading of the object: end of a hole in the readings, at most stops.
+  double unseen_top = 0;
 };
 
 /// Measures the depth images of a scan while they are read for its model.

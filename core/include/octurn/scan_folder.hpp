@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <string>
 #include <string_view>
@@ -39,7 +40,9 @@ struct Shot {
   /// each laser, in the order of `LaserCamera::lasers`.
   std::vector<std::string> pictures = {};
   double angle = 0.0;  ///< of the platform, radians, counter-clockwise seen from above
-  int pose = 0;        ///< index in the scan's poses
+  /// Radians: how much further the platform stood, as the scan's snapshots show.
+  double slipped = 0;
+  int pose = 0;  ///< index in the scan's poses
   /// Of the sensor's packets, those that were lost on USB while the snapshot was taken; 0 to 1.
   double lost_share = 0;
   /// Optical frame to the object's frame, metres; if present, it replaces angle and calibration.
@@ -190,8 +193,10 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan);
 
 /// Writes a solved pose into `folder/scan.json`, whole or not at all. All other keys stay, and so
 /// do the calibrations of single poses.
+/// @param slipped  radians, `Shot::slipped` of each shot; empty: the platform did not slip
 /// @throws Error  as `read_scan` and `write_scan`
-void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved);
+void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved,
+                       std::span<const double> slipped = {});
 
 /// The file of the shot with that index, such as "snapshots/000.png".
 std::string shot_file(int index);

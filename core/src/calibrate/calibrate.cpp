@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -11,11 +12,11 @@
 #include "calibrate/optics_solver.hpp"
 #include "calibrate/platform_plane.hpp"
 #include "calibrate/read_turn.hpp"
-#include "calibrate/still_turn.hpp"
 #include "calibrate/stop_offsets.hpp"
 #include "calibrate/stop_residuals.hpp"
 #include "calibrate/stop_step.hpp"
 #include "calibrate/surface_findings.hpp"
+#include "calibrate/turn_ratio.hpp"
 #include "io/number_text.hpp"
 #include "octurn/units.hpp"
 
@@ -95,25 +96,58 @@ bool all_stand_as_told(const CalibrationReport& report) {
   });
 }
 
+bool has_slipped(const CalibrationReport& report) {
+  return std::ranges::any_of(report.slipped, [](double angle) { return angle != 0; });
+}
+
+/// What a turn shows of slips of the platform or a move of the object.
+struct TurnFaults {
+  std::vector<CalibrationFinding> findings = {};
+  std::vector<double> slipped = {};  ///< as in `CalibrationReport`
+};
+
+TurnFaults find_faults(CalibrationReport& report, const TurnViews& views,
+                       const Eigen::Isometry3d& pose, int threads) {
+  TurnFaults faults;
+  if (const auto offsets = solve_stop_offsets(views, pose, threads)) {
+    report.stop_offsets = offsets->offsets;
+    faults.findings = find_slips(views.angles, *offsets);
+    faults.slipped = slipped_angles(faults.findings, *offsets);
+  }
+  const auto step = solve_object_step(views, pose, threads);
+  if (auto move = step ? find_move(*step) : std::nullopt) {
+    faults = {.findings = {*std::move(move)}};  // which looks like a slip
+  }
+  return faults;
+}
+
 /// Solves the axis, and detects faults that a new pose does not cure.
-std::optional<AxisSolution> solve(CalibrationReport& report, const TurnViews& views,
-                                  const PlatformPlane& plane, const Eigen::Isometry3d& levelled,
-                                  int threads) {
+/// @param views    get the angles at which the platform stood, if it slipped
+/// @param surface  a sensor that moved looks like a slip, or a move of the object
+std::optional<AxisSolution> solve(CalibrationReport& report, TurnViews& views,
+                                  const PlatformPlane& plane, const SurfaceFindings& surface,
+                                  const Eigen::Isometry3d& levelled, int threads) {
   auto loose = solve_axis(views, plane, find_axis_start(views, levelled, threads),
                           radians_from_degrees(loose_direction_deg), threads);
   if (!loose) {
     return std::nullopt;
   }
-  if (const auto offsets = solve_stop_offsets(views, loose->platform_from_sensor, threads)) {
-    report.stop_offsets = offsets->offsets;
-    report.findings = find_slips(views.angles, *offsets);
+  TurnFaults faults = find_faults(report, views, loose->platform_from_sensor, threads);
+  const bool has_faults = !faults.findings.empty();
+  if (!surface.bump) {
+    report.findings.insert(report.findings.begin(), faults.findings.begin(), faults.findings.end());
+    report.slipped = std::move(faults.slipped);
   }
-  const auto step = solve_object_step(views, loose->platform_from_sensor, threads);
-  if (auto move = step ? find_move(*step) : std::nullopt) {
-    report.findings = {*std::move(move)};  // which looks like a slip
+  if (has_slipped(report)) {
+    std::ranges::transform(views.angles, report.slipped, views.angles.begin(), std::plus<>());
+    loose = solve_axis(views, plane, loose->platform_from_sensor,
+                       radians_from_degrees(loose_direction_deg), threads);
+    if (!loose) {
+      return std::nullopt;
+    }
   }
   // A slip or a move tilts the axis, too.
-  if (report.findings.empty() && contradicts(*loose, plane)) {
+  if (!has_faults && contradicts(*loose, plane)) {
     return loose;
   }
   return solve_axis(views, plane, loose->platform_from_sensor,
@@ -240,10 +274,31 @@ CalibrationReport refused(CalibrationReport report, const std::string& reason) {
   return report;
 }
 
+/// Explains a turn that was refused, or in which something slipped, by how the platform turned.
+/// @return why the pose is refused
+std::string explain_turn(CalibrationReport& report, const TurnRatio& turned, std::size_t stops,
+                         std::string reason) {
+  const bool has_cause = !all_stand_as_told(report);
+  auto wrong = find_wrong_turn(turned, stops);
+  if (wrong && !(has_cause && wrong->code == "turn-unknown")) {
+    reason = wrong->detail;
+    report.findings = {*std::move(wrong)};
+  } else if (turned.is_alike() && !reason.empty() && !has_cause) {
+    reason =
+        "the object looks the same from all sides, and shows neither the axis nor whether the "
+        "platform turned: stand another object on the platform";
+    report.findings.clear();
+    if (report.before > max_after) {
+      report.findings.push_back(describe_alike());
+    }
+  }
+  return reason;
+}
+
 }  // namespace
 
 bool CalibrationReport::confirms_told() const {
-  return accepted && !optics_differ && agrees_with_told(*this);
+  return accepted && !optics_differ && !has_slipped(*this) && agrees_with_told(*this);
 }
 
 CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
@@ -258,15 +313,18 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   if (const std::string reason = refuse_object(views); !reason.empty()) {
     return refused(std::move(report), reason);
   }
-  const auto solution = solve(report, views, plane, levelled, threads);
   const SurfaceFindings surface =
       look_at_surface(report, reader.samples(), plane, turn.angles, levelled);
+  const auto solution = solve(report, views, plane, surface, levelled, threads);
   const bool is_uneven = !turn.has_sensor_map && surface.unevenness.value_or(0) > max_unevenness;
   if (is_uneven && !surface.bump) {
     add_no_map(report, *surface.unevenness);
   }
   if (!solution) {
-    return refused(std::move(report), "too little of the object is seen from two stops");
+    const TurnRatio turned = find_turn_ratio(views, plane, levelled, levelled, threads);
+    const std::string reason = explain_turn(report, turned, turn.angles.size(),
+                                            "too little of the object is seen from two stops");
+    return refused(std::move(report), reason);
   }
   const std::vector<double> as_told(turn.angles.size(), 0.0);
   report.platform_from_sensor = solution->platform_from_sensor;
@@ -282,13 +340,13 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
     last_step = optics->last_step;
   }
   compare_with_told(report, turn.platform_from_sensor);
-  const std::string reason = surface.bump && surface.bump->size > max_after
-                                 ? report.findings.front().detail
-                                 : refuse_solution(report, last_step);
-  if (auto still = find_still_turn(reader.samples(), turn, levelled, report.platform_from_sensor,
-                                   reason.empty())) {
-    report.findings = std::move(still->findings);
-    return refused(std::move(report), still->reason);
+  std::string reason = surface.bump && surface.bump->size > max_after
+                           ? report.findings.front().detail
+                           : refuse_solution(report, last_step);
+  if (!surface.bump && (!reason.empty() || !all_stand_as_told(report))) {
+    const TurnRatio turned =
+        find_turn_ratio(views, plane, levelled, report.platform_from_sensor, threads);
+    reason = explain_turn(report, turned, turn.angles.size(), std::move(reason));
   }
   report.accepted = reason.empty();
   if (optics && optics->are_significant && !report.accepted) {

@@ -5,6 +5,7 @@
 #include <limits>
 #include <optional>
 
+#include "calibrate/median.hpp"
 #include "depth/depth_limits.hpp"
 #include "depth/pinhole.hpp"
 
@@ -28,6 +29,9 @@ constexpr double min_cut_height =
 // a slope of at most 74 degrees. Mixed readings at depth edges have fewer such neighbours.
 constexpr int min_beside = 5;
 constexpr double max_slope_step = 0.012;  // share of the depth, over two pixels
+constexpr int top_rows = 3;               // kept rows that belong to the object's top
+constexpr std::size_t min_top_columns = 3;
+constexpr int beside_columns = 10;  // kept columns beside the top, where its hole has ended
 
 /// The intrinsics of an image whose pixels are blocks of `size` x `size` pixels of another.
 Intrinsics merged(Intrinsics lens, int size) {
@@ -157,6 +161,52 @@ std::vector<float> nearest_in_blocks(const Points& points, const Intrinsics& len
   return nearest;
 }
 
+/// Whether most pixels of a part of a row have readings.
+bool is_read(const Points& points, const Intrinsics& lens, int v, int from, int to) {
+  int read = 0;
+  for (int u = std::max(from, 0); u < std::min(to, lens.width); ++u) {
+    read += points.depth(u, v) > nearest_z ? 1 : 0;
+  }
+  return 2 * read > to - from;
+}
+
+/// Measures a hole in the readings above the object's highest ones: it begins there in most
+/// columns, and ends at something behind, which is also read beside it. Edges and shadows of the
+/// projector make no such holes.
+/// @param tops  for each column the row of the object's highest reading; the image's height: none
+/// @return metres at the object's distance; 0 if there is none
+double measure_hole(const Points& points, const Intrinsics& lens, const std::vector<int>& tops) {
+  const auto highest = std::ranges::min_element(tops);
+  if (highest == tops.end() || *highest >= lens.height) {
+    return 0;
+  }
+  std::vector<int> rows;
+  int first = lens.width;
+  int last = 0;
+  for (int u = 0; u < lens.width; ++u) {
+    const int top = tops[static_cast<std::size_t>(u)];
+    if (top > *highest + top_rows) {
+      continue;
+    }
+    int v = top - 1;
+    while (v >= 0 && !(points.depth(u, v) > nearest_z)) {
+      --v;
+    }
+    rows.push_back(v < 0 ? 0 : top - 1 - v);
+    first = std::min(first, u);
+    last = u;
+  }
+  const auto hole = static_cast<int>(median(rows));
+  const int middle = *highest - hole / 2;
+  const bool is_read_beside =
+      is_read(points, lens, middle, first - 2 * beside_columns, first - beside_columns) ||
+      is_read(points, lens, middle, last + beside_columns, last + 2 * beside_columns);
+  const auto column = static_cast<int>(highest - tops.begin());
+  return rows.size() < min_top_columns || !is_read_beside
+             ? 0
+             : hole * points.depth(column, *highest) / lens.fy;
+}
+
 void keep_each_once(std::vector<ObjectCell>& cells) {
   std::ranges::sort(cells);
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
@@ -214,6 +264,7 @@ ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::M
       heights(static_cast<std::size_t>(std::lround(2 * highest / height_step))) {
   const Points points(thin);
   blocks.nearest = nearest_in_blocks(points, blocks.lens);
+  std::vector<int> tops(static_cast<std::size_t>(thin.frame.width), thin.frame.height);
   for (int v = 1; v + 1 < thin.frame.height; ++v) {
     for (int u = 1; u + 1 < thin.frame.width; ++u) {
       const double z = points.depth(u, v);
@@ -227,11 +278,14 @@ ScanCheck::Stop::Stop(const Snapshot& thin, const Box& clip, const ObjectView::M
         depths += z * static_cast<double>(pixels_for_one);
         if (is_of_a_surface(points, u, v, z)) {
           seen.push_back(to_object_cell(point));
+          int& top = tops[static_cast<std::size_t>(u)];
+          top = std::min(top, v);
         }
         add_cuts(points, clip, point, u, v, cut);
       }
     }
   }
+  unseen_top = measure_hole(points, thin.intrinsics, tops);
   keep_each_once(seen);
   const int step = std::max(1, static_cast<int>(std::sqrt(view.pixels() / compared_readings)));
   readings = view.readings(step);

@@ -41,6 +41,7 @@ struct ScanCheck::Stop {
   std::array<std::vector<Eigen::Vector3f>, 5> cut = {};
   std::vector<ObjectCell> seen = {};  ///< cells with readings of a surface inside the box
   bool has_lines = false;
+  double unseen_top = 0;             ///< metres, as in `ScanFigures`
   std::vector<std::size_t> heights;  ///< of readings near z = 0, a count for each step
 
  private:

@@ -32,18 +32,4 @@ std::vector<float> sample_depths(const DepthFrame& frame, const Intrinsics& lens
   return depths;
 }
 
-std::optional<std::size_t> sample_at(const PlatformSamples& samples, const Intrinsics& lens,
-                                     const Eigen::Vector3d& point) {
-  if (point.z() < nearest_z) {
-    return std::nullopt;
-  }
-  const Eigen::Array2d place = (project(lens, point) / platform_step).array().round();
-  const Eigen::Array2d end(samples.columns, samples.rays.size() / samples.columns);
-  if ((place < 0).any() || (place >= end).any()) {
-    return std::nullopt;
-  }
-  return static_cast<std::size_t>(place.y()) * samples.columns +
-         static_cast<std::size_t>(place.x());
-}
-
 }  // namespace octurn

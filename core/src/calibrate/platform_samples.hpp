@@ -20,10 +20,4 @@ PlatformSamples make_platform_samples(const Intrinsics& lens, std::size_t stops)
 /// @throws std::invalid_argument  if the frame has another size than the intrinsics say
 std::vector<float> sample_depths(const DepthFrame& frame, const Intrinsics& lens);
 
-/// The index in `samples` of the pixel nearest to a point's projection.
-/// @param point  metres, optical frame
-/// @return nothing if it lies outside of the image, or behind the sensor
-std::optional<std::size_t> sample_at(const PlatformSamples& samples, const Intrinsics& lens,
-                                     const Eigen::Vector3d& point);
-
 }  // namespace octurn

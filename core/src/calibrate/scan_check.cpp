@@ -16,6 +16,8 @@ using Stops = std::vector<const ScanCheck::Stop*>;
 
 constexpr std::size_t height_window = 5;  // steps of height that a platform's readings spread over
 constexpr std::size_t min_platform_readings = 500;  // at a stop
+constexpr double noise_share = 0.01;                // of the readings at the platform's height
+constexpr double share_without_hole = 0.2;          // of the stops
 
 /// The largest angle between neighbouring stops, radians, from the sensor's headings in the
 /// object's frame.
@@ -34,12 +36,17 @@ double find_widest_gap(const Stops& stops) {
   return widest;
 }
 
-/// The mean height of the readings around the most frequent height near z = 0, metres.
-std::optional<double> find_platform(const Stops& stops) {
+/// The number of readings of all stops in each step of height.
+std::vector<std::size_t> sum_heights(const Stops& stops) {
   std::vector<std::size_t> counts(stops.front()->heights.size());
   for (const ScanCheck::Stop* stop : stops) {
     std::ranges::transform(counts, stop->heights, counts.begin(), std::plus<>());
   }
+  return counts;
+}
+
+/// The mean height of the readings around the most frequent height near z = 0, metres.
+std::optional<double> find_platform(const std::vector<std::size_t>& counts, std::size_t stops) {
   std::size_t best = 0;
   std::size_t best_count = 0;
   for (std::size_t first = 0; first + height_window <= counts.size(); ++first) {
@@ -50,7 +57,7 @@ std::optional<double> find_platform(const Stops& stops) {
       best_count = count;
     }
   }
-  if (best_count < min_platform_readings * stops.size()) {
+  if (best_count < min_platform_readings * stops) {
     return std::nullopt;
   }
   double sum = 0;
@@ -60,6 +67,43 @@ std::optional<double> find_platform(const Stops& stops) {
     sum += height * static_cast<double>(counts[bin]);
   }
   return sum / static_cast<double>(best_count);
+}
+
+/// Finds what lies between the platform's noise and the box. The noise is as high above the
+/// platform as below it, where nothing else is.
+/// @param platform  metres
+/// @param bottom    metres, of the box
+void find_low_object(const std::vector<std::size_t>& counts, double platform, double bottom,
+                     ScanFigures& figures) {
+  constexpr double step = ScanCheck::Stop::height_step;
+  const auto index = [](double height) {
+    return static_cast<std::ptrdiff_t>(std::floor((height + ScanCheck::Stop::highest) / step));
+  };
+  const std::ptrdiff_t middle = index(platform);
+  const auto size = static_cast<std::ptrdiff_t>(counts.size());
+  const auto at = [&](std::ptrdiff_t bin) {
+    return bin >= 0 && bin < size ? static_cast<double>(counts[static_cast<std::size_t>(bin)])
+                                  : 0.0;
+  };
+  std::ptrdiff_t end = 2;
+  while (end < middle && at(middle - end) > noise_share * at(middle)) {
+    ++end;
+  }
+  double above = 0;
+  for (std::ptrdiff_t by = end; middle + by < index(bottom); ++by) {
+    above += at(middle + by) - at(middle - by);
+  }
+  figures.noise_end = platform + static_cast<double>(end) * step;
+  figures.low_pixels = std::max(above, 0.0) * ScanCheck::Stop::thinning *
+                       ScanCheck::Stop::thinning / static_cast<double>(figures.stops);
+}
+
+/// The hole above the object's highest readings at most stops, metres.
+double find_unseen_top(const Stops& stops) {
+  std::vector<double> holes;
+  std::ranges::transform(stops, std::back_inserter(holes), &ScanCheck::Stop::unseen_top);
+  std::ranges::sort(holes);
+  return holes[static_cast<std::size_t>(share_without_hole * static_cast<double>(holes.size()))];
 }
 
 /// Centres of the cells in which more than one stop has readings, metres.
@@ -112,7 +156,12 @@ ScanFigures ScanCheck::figures(int threads) const {
   std::ranges::transform(cut, figures.cut_places.begin(), &Places::centres);
   figures.distance = figures.object_pixels > 0 ? depths / figures.object_pixels : 0;
   figures.widest_gap = find_widest_gap(stops);
-  figures.platform_height = find_platform(stops);
+  const std::vector<std::size_t> heights = sum_heights(stops);
+  figures.platform_height = find_platform(heights, stops.size());
+  if (figures.platform_height) {
+    find_low_object(heights, *figures.platform_height, clip_.min.z(), figures);
+  }
+  figures.unseen_top = find_unseen_top(stops);
   figures.seen = find_seen(stops);
   figures.by_lines = std::ranges::any_of(stops, &Stop::has_lines);
   StopComparison comparison = compare_stops(stops, threads);

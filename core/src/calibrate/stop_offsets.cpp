@@ -9,6 +9,7 @@
 #include <span>
 
 #include "calibrate/for_each_stop.hpp"
+#include "calibrate/median.hpp"
 #include "io/number_text.hpp"
 #include "octurn/units.hpp"
 #include "solve/symmetric_solver.hpp"
@@ -39,6 +40,8 @@ constexpr double slip_to_noise = 5;  // times the median step, which is the sens
 // is off for one to three stops, and one before a sensor with a pattern for three to ten, by up to
 // a degree.
 constexpr double min_explained = 0.5;  // of the offsets' squares about their mean, by the step
+
+constexpr std::size_t max_slips = 8;
 
 // A sensor's fixed pattern alone looks like a turn of 356 degrees.
 constexpr double min_drift_deg = 8;
@@ -269,10 +272,40 @@ std::vector<CalibrationFinding> find_slips(const std::vector<double>& angles,
   std::vector<CalibrationFinding> findings;
   if (auto drift = find_drift(angles, solved.offsets)) {
     findings.push_back(*std::move(drift));
-  } else if (auto slip = find_step(solved)) {
+    return findings;
+  }
+  StopOffsets rest = solved;
+  for (auto slip = find_step(rest); slip && findings.size() < max_slips; slip = find_step(rest)) {
+    const auto after = std::span(rest.offsets).subspan(static_cast<std::size_t>(*slip->stop));
+    std::ranges::transform(after, after.begin(),
+                           [&](double offset) { return offset - *slip->angle; });
     findings.push_back(*std::move(slip));
   }
+  std::ranges::sort(findings, {}, &CalibrationFinding::stop);
   return findings;
+}
+
+std::vector<double> slipped_angles(const std::vector<CalibrationFinding>& findings,
+                                   const StopOffsets& solved) {
+  std::vector<double> slipped(solved.offsets.size(), 0.0);
+  std::vector<std::size_t> ends;
+  for (const CalibrationFinding& finding : findings) {
+    if (finding.code == "slip") {
+      ends.push_back(static_cast<std::size_t>(*finding.stop));
+    }
+  }
+  ends.push_back(slipped.size());
+  std::size_t from = 0;
+  double first = 0;
+  for (const std::size_t end : ends) {
+    const auto part = std::span(solved.offsets).subspan(from, end - from);
+    const double middle = median(std::vector<double>(part.begin(), part.end()));
+    first = from == 0 ? middle : first;
+    std::fill(slipped.begin() + static_cast<std::ptrdiff_t>(from),
+              slipped.begin() + static_cast<std::ptrdiff_t>(end), middle - first);
+    from = end;
+  }
+  return slipped;
 }
 
 }  // namespace octurn

@@ -22,9 +22,14 @@ std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
                                               const Eigen::Isometry3d& platform_from_sensor,
                                               int threads);
 
-/// Findings from the offsets: a step between neighbouring stops is a "slip", a steady drift is
+/// Findings from the offsets: each step between neighbouring stops is a "slip", a steady drift is
 /// "turn-not-whole".
 std::vector<CalibrationFinding> find_slips(const std::vector<double>& angles,
                                            const StopOffsets& solved);
+
+/// How far the platform had slipped at each stop, radians: the median offset between two slips, less
+/// that before the first.
+std::vector<double> slipped_angles(const std::vector<CalibrationFinding>& findings,
+                                   const StopOffsets& solved);
 
 }  // namespace octurn

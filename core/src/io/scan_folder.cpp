@@ -34,6 +34,9 @@ Shot shot_from(const JsonValue& value, int version, const std::optional<LaserCam
   if (const auto lost = keys.value("lost_packets_percent")) {
     shot.lost_share = lost->number(0, 100) / 100;
   }
+  if (const auto slipped = keys.value("slipped_deg")) {
+    shot.slipped = radians_from_degrees(slipped->number());
+  }
   if (version == 1) {
     shot.angle = radians_from_degrees(keys.at("angle_deg").number());
     return shot;
@@ -154,6 +157,9 @@ json shot_json(const Shot& shot, const std::optional<LaserCamera>& laser) {
   } else {
     value["angle_deg"] = degrees_from_radians(shot.angle);
   }
+  if (shot.slipped != 0) {
+    value["slipped_deg"] = degrees_from_radians(shot.slipped);
+  }
   if (shot.pose != 0) {
     value["pose"] = shot.pose;
   }
@@ -248,11 +254,18 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
   write_document(folder, document);
 }
 
-void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved) {
+void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved,
+                       std::span<const double> slipped) {
   const std::string text = read_scan_file(folder / "scan.json");
   parse_scan(text);  // refuses a file that is not a scan
   json document = parse_json(text, ErrorCode::scan_malformed, "scan.json");
   document["calibration"]["solved"] = to_json(solved);
+  json& shots = document["snapshots"];
+  for (std::size_t i = 0; i < std::min(slipped.size(), shots.size()); ++i) {
+    if (slipped[i] != 0) {
+      shots[i]["slipped_deg"] = degrees_from_radians(slipped[i]);
+    }
+  }
   write_document(folder, document);
 }
 

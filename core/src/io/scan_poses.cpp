@@ -45,11 +45,11 @@ Eigen::Isometry3d model_pose(const Scan& scan, const Shot& shot) {
     return *shot.object_from_sensor;
   }
   if (scan.poses.empty()) {
-    return object_from_sensor(model_pose(scan), shot.angle);
+    return object_from_sensor(model_pose(scan), shot.angle + shot.slipped);
   }
   const ScanPose& pose = scan.poses[static_cast<std::size_t>(shot.pose)];
   const auto& sensor = pose.solved ? pose.solved->platform_from_sensor : pose.platform_from_sensor;
-  return known(scan, shot.pose) * object_from_sensor(sensor, shot.angle);
+  return known(scan, shot.pose) * object_from_sensor(sensor, shot.angle + shot.slipped);
 }
 
 std::optional<SensorOptics> model_optics(const Scan& scan, const Shot& shot) {

@@ -49,9 +49,7 @@ std::vector<CalibrationFinding> solve(Scan& scan, Build& build, const BuildInput
       solve_scan(input.folder, scan, readable_snapshots(input.folder, scan, stop), threads, stop);
   throw_if_stopped(stop);
   build.calibration = to_scan_calibration(solution.report);
-  if (solution.replaces_told) {
-    scan.solved = solution.solved;
-  }
+  take_solution(scan, solution);
   return solution.report.findings;
 }
 

@@ -218,7 +218,7 @@ RegistrationTurn depth_turn(const StoredTurn& turn, const std::stop_token& stop)
                        .platform_from_sensor = model_pose(turn.scan),
                        .clip = turn.scan.clip};
   for (const Shot& shot : turn.scan.shots) {
-    one.angles.push_back(shot.angle);
+    one.angles.push_back(shot.angle + shot.slipped);
   }
   one.read = [&turn, stored = stored_snapshots(turn.folder, turn.scan, stop)](std::size_t i) {
     auto kept = turn.kept ? turn.kept->find(i) : std::nullopt;

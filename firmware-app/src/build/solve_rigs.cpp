@@ -42,9 +42,7 @@ void solve_rig(StoredTurn& turn, std::size_t kept_bytes, int threads, const std:
                                    return snapshot;
                                  }};
   const ScanSolution solution = solve_scan(turn.folder, turn.scan, read_once, threads, stop);
-  if (solution.replaces_told) {
-    turn.scan.solved = solution.solved;
-  }
+  take_solution(turn.scan, solution);
   if (!solution.report.optics_differ) {  // else other depth images follow from the same files
     turn.kept = kept;
   }

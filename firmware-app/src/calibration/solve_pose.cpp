@@ -90,6 +90,18 @@ ScanSolution solve_scan(const std::filesystem::path& folder, const Scan& scan,
   return solution;
 }
 
+bool take_solution(Scan& scan, const ScanSolution& solution) {
+  if (!solution.replaces_told) {
+    return false;
+  }
+  scan.solved = solution.solved;
+  const std::vector<double>& slipped = solution.report.slipped;
+  for (std::size_t stop = 0; stop < slipped.size(); ++stop) {
+    scan.shots[stop].slipped = slipped[stop];
+  }
+  return true;
+}
+
 std::optional<Isometry3d> shared_pose(std::span<const SolvedPose> turns) {
   if (turns.size() < 2) {
     return std::nullopt;

@@ -36,6 +36,10 @@ struct ScanSolution {
 ScanSolution solve_scan(const std::filesystem::path& folder, const Scan& scan,
                         const SnapshotSource& snapshots, int threads, const std::stop_token& stop);
 
+/// Gives a scan the solved pose, and the angles at which its platform stood, if they replace the
+/// configured ones. @return whether they do
+bool take_solution(Scan& scan, const ScanSolution& solution);
+
 /// Returns the pose of a rig that did not move between turns: the mean of the turns' solved poses,
 /// weighted by 1 / sigma^2.
 /// @return nullopt for fewer than two turns, or if one is more than three sigmas off the mean

@@ -100,7 +100,7 @@ bool calibrate_from(const std::filesystem::path& folder, const CalibrateArgument
       solve_scan(folder, scan, stored_snapshots(folder, scan, stop), available_threads(), stop);
   const bool accepted = solution.report.accepted;
   if (arguments.apply && accepted) {
-    write_solved_pose(folder, solution.solved);
+    write_solved_pose(folder, solution.solved, solution.report.slipped);
   }
   write_calibration_report(solution.report, stop_angles(scan),
                            scan.laser ? scan.laser->lasers : std::vector<Laser>(),

@@ -45,6 +45,9 @@ struct PosedScan {
 
 void take_told_poses(Scan& scan) {
   scan.solved.reset();
+  for (Shot& shot : scan.shots) {
+    shot.slipped = 0;
+  }
   for (ScanPose& pose : scan.poses) {
     pose.solved.reset();
   }
@@ -61,9 +64,7 @@ PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelS
     ScanSolution solution =
         solve_scan(folder, posed.scan, stored_snapshots(folder, posed.scan, stop),
                    settings.limits.threads, stop);
-    if (solution.replaces_told) {
-      posed.scan.solved = std::move(solution.solved);
-    }
+    take_solution(posed.scan, solution);
     posed.findings = std::move(solution.report.findings);
   }
   add_stored_move(folder, posed.findings);

@@ -204,10 +204,9 @@ std::vector<CalibrationFinding> Run::calibrate() {
   throw_if_stopped(stop_);
   observer_.on_calibrated(solution);
   seen_optics_ = solution.report.optics;
-  if (solution.replaces_told) {
+  if (take_solution(scan_, solution)) {
     early_.give_up();
-    scan_.solved = solution.solved;
-    write_solved_pose(folder_, *scan_.solved);
+    write_solved_pose(folder_, *scan_.solved, solution.report.slipped);
   }
   if (std::exchange(preview_pose_, {}) || solution.replaces_told) {
     reconstruction_.start_again();

@@ -85,6 +85,17 @@ TEST(MissingPart, IsNoSpeck) {
   EXPECT_FALSE(find_missing_part(scan, post_model(0.12)));
 }
 
+TEST(MissingPart, IsNoTableThatIsBowed) {
+  ScanFigures scan = post_seen(0.12);
+  for (double x = 0.06; x < 0.1; x += 0.005) {
+    scan.seen.emplace_back(x, 0, 0.0025);
+    scan.seen.emplace_back(x, 0.005, 0.0025);
+  }
+  EXPECT_TRUE(find_missing_part(scan, post_model(0.12)));
+  scan.noise_end = 0.004;
+  EXPECT_FALSE(find_missing_part(scan, post_model(0.12)));
+}
+
 TEST(MissingPart, AllowsForANoiseThatGrowsWithTheSquareOfTheDistance) {
   ModelReport model = post_model(0.12);
   ScanFigures scan = post_seen(0.12);

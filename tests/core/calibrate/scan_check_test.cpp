@@ -117,6 +117,42 @@ TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
   }
 }
 
+/// A turn of a block before the disc, whose readings above `height` metres are lost.
+CalibrationTurn turn_with_dark_top(double height) {
+  CalibrationTurn turn = rendered_turn(block({0.06, 0.04, 0.05}), 6);
+  turn.read = [height, turn](std::size_t stop) {
+    DepthFrame frame = turn.read(stop);
+    for (int v = 0; v < frame.height; ++v) {
+      for (int u = 0; u < frame.width; ++u) {
+        std::uint16_t& depth = frame.depth[static_cast<std::size_t>(v * frame.width + u)];
+        const double z = depth * turn.intrinsics.depth_unit;
+        const Eigen::Vector3d ray((u - turn.intrinsics.cx) / turn.intrinsics.fx,
+                                  (v - turn.intrinsics.cy) / turn.intrinsics.fy, 1);
+        depth = (turn.platform_from_sensor * (z * ray)).z() > height ? std::uint16_t{0} : depth;
+      }
+    }
+    return frame;
+  };
+  return turn;
+}
+
+TEST(ScanCheck, MeasuresTheHoleInTheReadingsAboveADarkTop) {
+  EXPECT_LT(figures(turn_with_dark_top(1)).unseen_top, 0.005);
+  // As the sensor sees it, 25 mm of the sides and a lid of 40 to 60 mm, foreshortened.
+  const double hole = figures(turn_with_dark_top(0.025)).unseen_top;
+  EXPECT_GT(hole, 0.03);
+  EXPECT_LT(hole, 0.06);
+}
+
+TEST(ScanCheck, CountsWhatLiesBetweenThePlatformsNoiseAndTheBox) {
+  const Box high{.min = {-0.14, -0.14, 0.005}, .max = roomy.max};
+  const ScanFigures tile = figures(rendered_turn(block({0.08, 0.08, 0.004}), 6), high);
+  EXPECT_GT(tile.low_pixels, 1000);  // of about 2,300 that see the tile
+  EXPECT_LT(tile.noise_end, 0.004);
+  const Shape nothing = [](const Eigen::Vector3d&) { return 1.0; };
+  EXPECT_LT(figures(rendered_turn(nothing, 6), high).low_pixels, 60);
+}
+
 TEST(ScanCheck, KeepsWhereSeveralStopsSawTheObject) {
   const std::vector<Eigen::Vector3d> seen = figures(turn_with_hand()).seen;
   for (const Eigen::Vector3d& place : seen) {

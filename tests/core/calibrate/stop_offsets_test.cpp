@@ -154,6 +154,24 @@ TEST(FindSlips, ReportsATurnThatIsNotWhole) {
   EXPECT_NEAR(std::get<double>(findings[0].parameters.at("turn_deg")), 270, 1);
 }
 
+TEST(FindSlips, NamesEachOfSeveralSteps) {
+  StopOffsets solved = noisy_offsets(36);
+  std::vector<double> slipped(36, 0.0);
+  for (std::size_t stop = 9; stop < 36; ++stop) {
+    slipped[stop] = radians_from_degrees(stop < 25 ? -10 : -20);
+    solved.offsets[stop] += slipped[stop];
+  }
+  const auto findings = find_slips(even_angles(36), solved);
+  ASSERT_EQ(findings.size(), 2U);
+  EXPECT_EQ(findings[0].stop, 9);
+  EXPECT_EQ(findings[1].stop, 25);
+  const std::vector<double> found = slipped_angles(findings, solved);
+  ASSERT_EQ(found.size(), 36U);
+  for (std::size_t stop = 0; stop < 36; ++stop) {
+    EXPECT_NEAR(degrees_from_radians(found[stop]), degrees_from_radians(slipped[stop]), 0.2);
+  }
+}
+
 TEST(FindSlips, FindsNothingInNoise) {
   EXPECT_TRUE(find_slips(even_angles(24), noisy_offsets(24)).empty());
 }

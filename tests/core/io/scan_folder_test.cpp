@@ -126,12 +126,18 @@ TEST(WriteScan, KeepsTheShareOfLostPackets) {
   const TemporaryFolder folder;
   Scan scan = write_contract_scan(folder.path());
   scan.shots[1].lost_share = 0.02;
+  scan.shots[1].slipped = radians_from_degrees(-1.8);
 
   write_scan(folder.path(), scan);
 
   const Scan read = read_scan(folder.path());
   EXPECT_EQ(read.shots[0].lost_share, 0);
   EXPECT_DOUBLE_EQ(read.shots[1].lost_share, 0.02);
+  EXPECT_EQ(read.shots[0].slipped, 0);
+  EXPECT_DOUBLE_EQ(read.shots[1].slipped, radians_from_degrees(-1.8));
+  EXPECT_TRUE(model_pose(read, read.shots[1])
+                  .isApprox(object_from_sensor(read.platform_from_sensor,
+                                               read.shots[1].angle + read.shots[1].slipped)));
 }
 
 TEST(ReadSnapshot, SaysWhichFileIsMissing) {

@@ -134,10 +134,13 @@ TEST(Judge, LowersTheSpaceForWhatLiesBelowIt) {
 TEST(Judge, MentionsAFilledHollowOfAGoodModel) {
   ScanFigures scan = right_scan();
   ModelReport model = right_model();
+  const auto surface = std::make_shared<SurfaceCells>();
+  model.places.surface = surface;
   for (int i = 0; i < 64; ++i) {  // a wall, 60 mm high, around a floor 25 mm up
     const double angle = 2 * std::numbers::pi * i / 64;
     for (double z = 0.0025; z < 0.06; z += 0.005) {
       scan.seen.emplace_back(0.04 * std::cos(angle), 0.04 * std::sin(angle), z);
+      surface->add(scan.seen.back());
     }
     model.places.unseen.emplace_back(0.02 * std::cos(angle), 0.02 * std::sin(angle), 0.025);
   }

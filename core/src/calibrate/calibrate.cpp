@@ -121,6 +121,30 @@ TurnFaults find_faults(CalibrationReport& report, const TurnViews& views,
   return faults;
 }
 
+/// Solves the axis and the angles at which a platform that slipped stood. The angles were found
+/// with an axis that the slips had shifted: each pass shows the rest.
+/// @param views  get the angles
+std::optional<AxisSolution> solve_slipped(CalibrationReport& report, TurnViews& views,
+                                          const PlatformPlane& plane, Eigen::Isometry3d pose,
+                                          int threads) {
+  constexpr int passes = 3;
+  const std::vector<double> told = views.angles;
+  std::optional<AxisSolution> solution;
+  for (int pass = 0; pass < passes; ++pass) {
+    std::ranges::transform(told, report.slipped, views.angles.begin(), std::plus<>());
+    solution = solve_axis(views, plane, pose, radians_from_degrees(loose_direction_deg), threads);
+    const auto rest = solution ? solve_stop_offsets(views, solution->platform_from_sensor, threads)
+                               : std::nullopt;
+    if (!rest || pass + 1 == passes) {
+      break;
+    }
+    pose = solution->platform_from_sensor;
+    std::ranges::transform(report.slipped, slipped_angles(report.findings, *rest),
+                           report.slipped.begin(), std::plus<>());
+  }
+  return solution;
+}
+
 /// Solves the axis, and detects faults that a new pose does not cure.
 /// @param views    get the angles at which the platform stood, if it slipped
 /// @param surface  a sensor that moved looks like a slip, or a move of the object
@@ -139,9 +163,7 @@ std::optional<AxisSolution> solve(CalibrationReport& report, TurnViews& views,
     report.slipped = std::move(faults.slipped);
   }
   if (has_slipped(report)) {
-    std::ranges::transform(views.angles, report.slipped, views.angles.begin(), std::plus<>());
-    loose = solve_axis(views, plane, loose->platform_from_sensor,
-                       radians_from_degrees(loose_direction_deg), threads);
+    loose = solve_slipped(report, views, plane, loose->platform_from_sensor, threads);
     if (!loose) {
       return std::nullopt;
     }
@@ -274,6 +296,14 @@ CalibrationReport refused(CalibrationReport report, const std::string& reason) {
   return report;
 }
 
+/// Whether the platform turned otherwise than configured.
+bool names_turn(const CalibrationReport& report) {
+  return std::ranges::any_of(report.findings, [](const CalibrationFinding& finding) {
+    return finding.code == "still" || finding.code == "turn-ratio" ||
+           finding.code == "turn-unknown";
+  });
+}
+
 /// Explains a turn that was refused, or in which something slipped, by how the platform turned.
 /// @return why the pose is refused
 std::string explain_turn(CalibrationReport& report, const TurnRatio& turned, std::size_t stops,
@@ -321,7 +351,8 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
     add_no_map(report, *surface.unevenness);
   }
   if (!solution) {
-    const TurnRatio turned = find_turn_ratio(views, plane, levelled, levelled, threads);
+    const TurnRatio turned =
+        find_turn_ratio(views, turn.angles, plane, levelled, levelled, threads);
     const std::string reason = explain_turn(report, turned, turn.angles.size(),
                                             "too little of the object is seen from two stops");
     return refused(std::move(report), reason);
@@ -343,13 +374,14 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   std::string reason = surface.bump && surface.bump->size > max_after
                            ? report.findings.front().detail
                            : refuse_solution(report, last_step);
-  if (!surface.bump && (!reason.empty() || !all_stand_as_told(report))) {
+  if (!surface.bump && (!reason.empty() || !all_stand_as_told(report) ||
+                        looks_still(views, levelled, report.platform_from_sensor, threads))) {
     const TurnRatio turned =
-        find_turn_ratio(views, plane, levelled, report.platform_from_sensor, threads);
+        find_turn_ratio(views, turn.angles, plane, levelled, report.platform_from_sensor, threads);
     reason = explain_turn(report, turned, turn.angles.size(), std::move(reason));
   }
   report.accepted = reason.empty();
-  if (optics && optics->are_significant && !report.accepted) {
+  if (optics && optics->are_significant && !report.accepted && !names_turn(report)) {
     report.findings.push_back(describe_unused_optics(report.optics->value, turn.intrinsics));
   }
   return refused(std::move(report), reason);

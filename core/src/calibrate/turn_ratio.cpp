@@ -88,9 +88,8 @@ double confirmed_share(const TurnViews& turn, const Isometry3d& pose, double rat
 }
 
 /// The share with the axis that fits best to a ratio.
-double share_with_ratio(TurnViews& turn, const PlatformPlane& plane, const Isometry3d& levelled,
-                        double ratio, int threads) {
-  std::vector<double> angles = turn.angles;
+double share_with_ratio(TurnViews& turn, std::vector<double> angles, const PlatformPlane& plane,
+                        const Isometry3d& levelled, double ratio, int threads) {
   for (double& angle : angles) {
     angle *= ratio;
   }
@@ -132,14 +131,24 @@ std::string advise(double ratio) {
 
 bool TurnRatio::is_as_told() const { return ratio == 1; }
 
-bool TurnRatio::is_alike() const { return ratio == 1 && still > distinguishable * as_told; }
+bool TurnRatio::is_alike() const {
+  return ratio == 1 && as_told >= min_confirmed && still > distinguishable * as_told;
+}
 
 bool TurnRatio::is_unknown() const { return ratio == 1 && as_told < min_confirmed; }
 
-TurnRatio find_turn_ratio(TurnViews& turn, const PlatformPlane& plane, const Isometry3d& levelled,
+bool looks_still(const TurnViews& turn, const Isometry3d& levelled, const Isometry3d& solved,
+                 int threads) {
+  const double still = confirmed_share(turn, levelled, 0, threads);
+  return still > min_confirmed &&
+         confirmed_share(turn, solved, 1, threads) < distinguishable * still;
+}
+
+TurnRatio find_turn_ratio(TurnViews& turn, const std::vector<double>& told,
+                          const PlatformPlane& plane, const Isometry3d& levelled,
                           const Isometry3d& solved, int threads) {
   TurnRatio found{.as_told = std::max(confirmed_share(turn, solved, 1, threads),
-                                      share_with_ratio(turn, plane, levelled, 1, threads)),
+                                      share_with_ratio(turn, told, plane, levelled, 1, threads)),
                   .still = confirmed_share(turn, levelled, 0, threads)};
   found.confirmed = found.as_told;
   const auto may_be = [&](double ratio, double confirmed) {
@@ -151,7 +160,7 @@ TurnRatio find_turn_ratio(TurnViews& turn, const PlatformPlane& plane, const Iso
   };
   may_be(0, found.still);
   for (const double ratio : wrong_ratios) {
-    may_be(ratio, share_with_ratio(turn, plane, levelled, ratio, threads));
+    may_be(ratio, share_with_ratio(turn, told, plane, levelled, ratio, threads));
   }
   return found;
 }

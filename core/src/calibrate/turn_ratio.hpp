@@ -2,6 +2,7 @@
 
 #include <Eigen/Geometry>
 #include <optional>
+#include <vector>
 
 #include "calibrate/platform_plane.hpp"
 #include "calibrate/stop_residuals.hpp"
@@ -25,14 +26,19 @@ struct TurnRatio {
   bool is_unknown() const;
 };
 
+/// Whether the depth images fit much better to a platform that did not turn than to `solved`.
+bool looks_still(const TurnViews& turn, const Eigen::Isometry3d& levelled,
+                 const Eigen::Isometry3d& solved, int threads);
+
 /// Compares the ratios at which a turntable goes wrong: none, the other way, half and double, a
 /// third and three times, a quarter and four times. Each gets an axis of its own.
-/// @param turn   its angles and pairs are those of the configured turn again at the end
+/// @param turn   its angles are those at which the platform stood; they stay as they are
+/// @param told   configured angles, radians
 /// @param solved platform_from_sensor as solved with the configured angles
 /// @param levelled  platform_from_sensor with the surface at z = 0, roughly
-TurnRatio find_turn_ratio(TurnViews& turn, const PlatformPlane& plane,
-                          const Eigen::Isometry3d& levelled, const Eigen::Isometry3d& solved,
-                          int threads);
+TurnRatio find_turn_ratio(TurnViews& turn, const std::vector<double>& told,
+                          const PlatformPlane& plane, const Eigen::Isometry3d& levelled,
+                          const Eigen::Isometry3d& solved, int threads);
 
 /// Returns the finding of an object that looks the same from all sides, with a pose that is wrong.
 CalibrationFinding describe_alike();

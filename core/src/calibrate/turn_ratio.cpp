@@ -32,6 +32,9 @@ constexpr double hidden_behind = 0.008;        // metres behind what a stop saw:
 // of a bunny; of an object of revolution all confirm about as many.
 constexpr double min_confirmed = 0.7;    // by the right ratio
 constexpr double distinguishable = 0.7;  // of these, by the configured angles
+// One picture confirms itself, and a flat thing that lies still nine tenths of itself turned.
+constexpr double min_still = 0.95;
+constexpr double distinguishable_from_still = 0.93;
 
 constexpr double loose_direction_deg = 0.2;
 
@@ -140,8 +143,8 @@ bool TurnRatio::is_unknown() const { return ratio == 1 && as_told < min_confirme
 bool looks_still(const TurnViews& turn, const Isometry3d& levelled, const Isometry3d& solved,
                  int threads) {
   const double still = confirmed_share(turn, levelled, 0, threads);
-  return still > min_confirmed &&
-         confirmed_share(turn, solved, 1, threads) < distinguishable * still;
+  return still > min_still &&
+         confirmed_share(turn, solved, 1, threads) < distinguishable_from_still * still;
 }
 
 TurnRatio find_turn_ratio(TurnViews& turn, const std::vector<double>& told,
@@ -158,7 +161,10 @@ TurnRatio find_turn_ratio(TurnViews& turn, const std::vector<double>& told,
       found.confirmed = confirmed;
     }
   };
-  may_be(0, found.still);
+  if (found.still > min_still && found.as_told < distinguishable_from_still * found.still) {
+    found.ratio = 0;
+    found.confirmed = found.still;
+  }
   for (const double ratio : wrong_ratios) {
     may_be(ratio, share_with_ratio(turn, told, plane, levelled, ratio, threads));
   }

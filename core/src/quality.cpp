@@ -75,7 +75,7 @@ double focal_sigma(const Scan& scan, const std::optional<SolvedPose>& solved,
 enum class Link { platform, turn, pose, sight, model };
 
 Link find_link(const QualityReason& reason) {
-  constexpr std::array<std::pair<std::string_view, Link>, 10> links{
+  constexpr std::array<std::pair<std::string_view, Link>, 11> links{
       {{"empty", Link::platform},
        {"too-low", Link::platform},
        {"turntable", Link::turn},
@@ -84,6 +84,7 @@ Link find_link(const QualityReason& reason) {
        {"little-seen", Link::sight},
        {"filled-far", Link::sight},
        {"cut-by-box", Link::sight},
+       {"hollow-filled", Link::model},
        {"parts-dropped", Link::model},
        {"part-missing", Link::model}}};
   if (reason.code == "moved") {  // found by the calibration, or by what other stops saw through
@@ -281,10 +282,16 @@ std::optional<double> find_rim(const ScanFigures& scan, const Eigen::Vector3d& p
 
 /// Mentions a deep hollow whose floor no stop saw: there the model is filled up.
 void judge_hollow(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
+  constexpr double floor = 0.006;  // metres above the lowest readings: it may lie below the box
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector3d& seen : scan.seen) {
+    lowest = std::min(lowest, seen.z());
+  }
   double depth = 0;
   std::vector<Eigen::Vector3d> places;
   for (const Eigen::Vector3d& place : model.places.unseen) {
-    if (const auto rim = find_rim(scan, place)) {
+    const bool is_floor = place.z() < lowest + floor;
+    if (const auto rim = is_floor ? std::nullopt : find_rim(scan, place)) {
       depth = std::max(depth, *rim);
       places.push_back(place);
     }

@@ -46,8 +46,8 @@ grow() {
   fi
 }
 
-# signature_of DISK MARK: prints its signature. A new card gets one of its own, since Windows takes the second of two alike offline.
-# A card that was updated does not: an older system that comes back would look for the image's.
+# signature_of DISK MARK: prints its signature. A new card gets one of its own, since Windows takes the second of two
+# alike offline. A card that was updated does not: an older system that comes back would look for the image's.
 signature_of() {
   signature=$(number_at 440 "$1")
   if [ "$signature" = @signature@ ] && [ -z "$2" ]; then

@@ -64,7 +64,8 @@ export function manySnapshots(count, width, height) {
 
 /** An archive that once made the daemon take a gigabyte: its scan.json has millions of empty lists. */
 export function hostileArchive() {
-  const scan = JSON.stringify({...scanJson(1, 48, 36), snapshots: 0}).replace('"snapshots":0', `"snapshots":[${'[],'.repeat(5e6)}[]]`);
+  const lists = `"snapshots":[${'[],'.repeat(5e6)}[]]`;
+  const scan = JSON.stringify({...scanJson(1, 48, 36), snapshots: 0}).replace('"snapshots":0', lists);
   return zipOf([['scan.json', scan]]);
 }
 

@@ -1,6 +1,7 @@
-// limits ROUNDS: the daemon in a control group with the limits that octurn.service has on a Raspberry Pi of 1 GB: MemoryMax and TasksMax.
-// In each of ROUNDS rounds it scans with all the threads that a setting allows, builds fine models by both methods, checks four hostile
-// archives at once, and sends files to many clients. The kernel must not end it, and refuse it no thread that a scan needs.
+// limits ROUNDS: the daemon in a control group with the limits that octurn.service has on a Raspberry Pi of 1 GB:
+// MemoryMax and TasksMax. In each of ROUNDS rounds it scans with all the threads that a setting allows, builds fine
+// models by both methods, checks four hostile archives at once, and sends files to many clients. The kernel must not end
+// it, and refuse it no thread that a scan needs.
 // Ends with status 77 where no control group can be made: that needs root, and the controllers memory and pids.
 
 import {existsSync, mkdirSync, readFileSync, rmdirSync, writeFileSync} from 'node:fs';
@@ -31,7 +32,11 @@ function removeGroups(groups) {
   }
 }
 
-/** Makes a control group. @returns {{procs: string[], read: (file: string) => string}} the files that a process joins it by, and a reader */
+/**
+ * Makes a control group.
+ * @returns {{procs: string[], isNew: boolean, has: (file: string) => boolean, read: (file: string) => string}} the files
+ *     that a process joins it by, and a reader
+ */
 function makeGroup() {
   const name = `octurn-attack-${process.pid}`;
   const isNew = existsSync('/sys/fs/cgroup/cgroup.controllers');
@@ -46,12 +51,16 @@ function makeGroup() {
     console.log(`needs root, and a control group with memory and pids: ${error.message}`);
     process.exit(77);
   }
-  return {procs: groups.map((group) => join(group, 'cgroup.procs')), isNew, read: (of) => readFileSync(file(of), 'utf8')};
+  return {procs: groups.map((group) => join(group, 'cgroup.procs')), isNew, has: (of) => file(of) !== undefined,
+    read: (of) => readFileSync(file(of), 'utf8')};
 }
 
 const group = makeGroup();
 const start = join(folder, 'start');
-writeFileSync(start, `#!/bin/sh\nfor procs in ${group.procs.join(' ')}; do echo $$ >$procs; done\nexec ${process.env.OCTURN_PROGRAM} "$@"\n`, {mode: 0o755});
+writeFileSync(start, `#!/bin/sh
+for procs in ${group.procs.join(' ')}; do echo $$ >$procs; done
+exec ${process.env.OCTURN_PROGRAM} "$@"
+`, {mode: 0o755});
 process.env.OCTURN_PROGRAM = start;
 const killed = () => Number(/oom_kill (\d+)/.exec(group.read(group.isNew ? 'memory.events' : 'memory.oom_control'))[1]);
 const refused = () => Number(/max (\d+)/.exec(group.read('pids.events'))[1]);
@@ -61,13 +70,18 @@ const daemon = await Daemon.start(folder, {settings: {memory_limit_mb: machine /
 const counts = {models: 0, archives: 0, files: 0};
 let threads = 0;
 
+/** Counts the tasks; where the kernel keeps no peak, those of now. */
+function countTasks() {
+  threads = Math.max(threads, Number(group.read(group.has('pids.peak') ? 'pids.peak' : 'pids.current')));
+}
+
 /** Builds a model, which may be refused for lack of memory. */
 async function build(id, settings) {
   const reply = await daemon.ask('POST', `/api/v1/scans/${id}/builds`, settings);
   require(reply.status === 202, `a build: ${reply.status} ${reply.body}`);
   let {state, error} = reply.json;
   while (state === 'waiting' || state === 'running') {
-    threads = Math.max(threads, Number(group.read('pids.current')));
+    countTasks();
     await sleep(20);
     ({state, error} = await daemon.get(reply.headers.location));
   }
@@ -80,7 +94,8 @@ async function round(archive) {
   require(scan.state === 'finished', `the scan is ${JSON.stringify(scan)}`);
   const files = ['scan.zip', 'Scan.stl', 'Scan.3mf', 'Scan.ply', 'coarse.stl', 'thumbnail.png'];
   const cut = ({code}) => ({status: code}); // where connections are too many
-  const requests = Array.from({length: 24}, (_, i) => daemon.ask('GET', `/api/v1/scans/${scan.id}/${files[i % files.length]}`).catch(cut));
+  const ask = (file) => daemon.ask('GET', `/api/v1/scans/${scan.id}/${file}`).catch(cut);
+  const requests = Array.from({length: 24}, (_, i) => ask(files[i % files.length]));
   // Two are checked at once. Others are refused, perhaps before they are sent whole.
   const archives = Array.from({length: 4}, () => importOf(daemon, archive).catch(cut));
   await build(scan.id, {method: 'intersection', leaf_size_mm: 0.25});
@@ -102,11 +117,13 @@ try {
     require(daemon.isAlive, 'the daemon has ended');
   }
   require(killed() === 0, 'the kernel has killed a process for its memory');
+  countTasks();
   require(refused() === 0, `the kernel has refused ${refused()} threads`);
   require(threads > 128, `only ${threads} threads were seen: the setting is not in force`);
   const [status] = await daemon.end();
   require(status === 0, `the daemon ends with ${status}`);
-  console.log(`counted: limits: of ${Math.round(share * machine)} MB and ${tasks} tasks at most ${peak().toFixed(0)} MB, caches included, and ${threads} tasks seen; ` +
+  console.log(`counted: limits: of ${Math.round(share * machine)} MB and ${tasks} tasks at most ` +
+    `${peak().toFixed(0)} MB, caches included, and ${threads} tasks; ` +
     `${rounds} rounds, ${counts.models} models, ${counts.archives} archives, ${counts.files} files; nothing killed or refused`);
 } catch (error) {
   console.error(`limits: ${error.message}\n${daemon.log}`);

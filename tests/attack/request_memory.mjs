@@ -1,6 +1,6 @@
-// request_memory LEAF_MM: of a scan with a large model, whose leaves have that size, asks for everything that the interface gives, and sends
-// it archives, one request after the other. None may take more than 100 MB above what the idle daemon has. Requests that make a model are
-// not among them: the setting memory_limit_mb is theirs.
+// request_memory LEAF_MM: of a scan with a large model, whose leaves have that size, asks for everything that the
+// interface gives, and sends it archives, one request after the other. None may take more than 100 MB above what the
+// idle daemon has. Requests that make a model are not among them: the setting memory_limit_mb is theirs.
 
 import {readFileSync, writeFileSync} from 'node:fs';
 
@@ -23,7 +23,8 @@ function addresses(id) {
   const all = Object.entries(paths).filter(([path, {get}]) => get && path !== '/api/v1/events').map(([path]) => path);
   const formats = ['3mf', 'ply', 'glb', 'obj', 'stl'];
   const filled = all.map((path) => path.replace('{id}', id).replace('{number}', '0'));
-  return filled.flatMap((path) => path.includes('{format}') ? formats.map((format) => path.replace('{format}', format)) : [path]);
+  return filled.flatMap((path) =>
+    path.includes('{format}') ? formats.map((format) => path.replace('{format}', format)) : [path]);
 }
 
 try {
@@ -52,13 +53,14 @@ try {
       answered += status === 200 ? 1 : 0;
     });
   }
-  for (const [name, archive] of [['hostile archive', hostileArchive()], ['archive of 100 snapshots', manySnapshots(100, 640, 480)]]) {
+  const archives = {'hostile archive': hostileArchive(), 'archive of 100 snapshots': manySnapshots(100, 640, 480)};
+  for (const [name, archive] of Object.entries(archives)) {
     await measure(name, () => importOf(daemon, archive));
   }
   require(answered > 30, `only ${answered} of them were answered`);
   await daemon.end();
-  console.log(`counted: request_memory: ${count} requests, with a model of ${Math.round(model / 1e6)} MB; ${Math.round(idle / 1e6)} MB idle, at most ` +
-    `${Math.round(most / 1e6)} MB more, by ${what}`);
+  console.log(`counted: request_memory: ${count} requests, with a model of ${Math.round(model / 1e6)} MB; ` +
+    `${Math.round(idle / 1e6)} MB idle, at most ${Math.round(most / 1e6)} MB more, by ${what}`);
 } catch (error) {
   console.error(`request_memory: ${moment}: ${error.message}\n${daemon.log}`);
   process.exit(1);

@@ -44,6 +44,11 @@ const hiddenPart = (page, id) => page.evaluate((name) => {
   return isSeen(middle, top + 3) && isSeen(middle, bottom - 3) ? '' : `#${name} from ${top} to ${bottom} of ${innerHeight}`;
 }, id);
 
+const areApart = (page, ...ids) => page.evaluate((names) => {
+  const [a, b] = names.map((name) => document.getElementById(name).getBoundingClientRect());
+  return a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+}, ids);
+
 /** The part of the model's picture within the window, pixels. */
 const pictureInSight = (page) => page.locator('#view').evaluate((view) => {
   const {top, bottom} = view.getBoundingClientRect();
@@ -153,11 +158,22 @@ async function views(page) {
   }
   assert.ok([...counts.values()].filter((count) => count > 20).length >= 4, `${[...counts]}`);
   assert.ok(!clay.equals(await page.locator('#view').screenshot()), 'it is painted');
-  const {phone, desktop} = screens;
-  for (const [name, size] of Object.entries({phone, desktop, landscape: shortScreens.landscape})) {
+  const {phone, small, desktop} = screens;
+  for (const [name, size] of Object.entries({phone, small, low: [375, 553], desktop, ...shortScreens})) {
     await resize(page, size);
     assert.equal(await hiddenPart(page, 'legend'), '', name);
     await picture(page, `views-${name}`, {fullPage: false});
+    await page.locator('#cut').click();
+    assert.deepEqual(await Promise.all(['legend', 'cut-height'].map((id) => hiddenPart(page, id))), ['', ''], name);
+    assert.ok(await areApart(page, 'legend', 'cut-height'), name);
+    await page.locator('#cut').click();
+  }
+  for (const [name, size] of Object.entries({...shortScreens, between: [900, 800], desktop})) {
+    await resize(page, size);
+    await page.locator('#measure').click();
+    assert.equal(await hiddenPart(page, 'measured'), '', name);
+    assert.ok(await page.locator('#measured').evaluate(({clientWidth}) => clientWidth) > 150, name);
+    await page.locator('#measure').click();
   }
   assert.deepEqual(await complaints(page), []);
   await button.click();

@@ -78,7 +78,9 @@ export async function togglePaint({viewer, painted, say}) {
     say('');
   } catch (error) {
     const isStill = painted().url === url;
-    press(paint, !isStill && isPressed(paint));
+    if (isStill) {
+      press(paint, false);
+    }
     say(isStill ? sentence(error instanceof Error ? error.message : String(error)) : '');
   }
 }

@@ -223,7 +223,8 @@ function preparePassword() {
   element('password-card').addEventListener('submit', (/** @type {Event} */ event) => {
     event.preventDefault();
     const bytes = new TextEncoder().encode(input.value).length;
-    bytes < 8 || bytes > 100 ? setText(element('password-complaint'), text('settings.password-length')) : setPassword(input.value);
+    const isRight = [...input.value].length >= 8 && bytes <= 100;
+    isRight ? setPassword(input.value) : setText(element('password-complaint'), text('settings.password-length'));
   });
   element('password-remove').addEventListener('click', () => setPassword(null));
   element('password-show').addEventListener('click', () => {

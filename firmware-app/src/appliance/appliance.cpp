@@ -212,7 +212,7 @@ void Appliance::Upload::commit() {
 fs::path Appliance::place_for_update(std::uint64_t bytes) const {
   if (bytes > Upload::max_bytes) {
     throw Error(ErrorCode::too_large, "an update has at most 160 MiB, and this file has more",
-                "Choose the file octurn.update.");
+                "Choose the file octurn-VERSION.update of a release.");
   }
   const UpdateState last = answered_update();
   if (is_being_installed(last)) {

@@ -13,7 +13,7 @@ namespace octurn {
 /// The colour of a vertex by the number of snapshots that saw it: none, 1, 2, 3, 4, 5 or more. The
 /// page's legend has the same ones.
 inline constexpr std::array<Rgb, 6> colours_of_views{{
-    {0x8a, 0x90, 0x96},
+    {0xdf, 0xe3, 0xe6},
     {0xb8, 0x32, 0x2a},
     {0xe2, 0x7a, 0x2e},
     {0xee, 0xc3, 0x4a},

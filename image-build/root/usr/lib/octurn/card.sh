@@ -1,6 +1,6 @@
 # shellcheck shell=sh
-# Sourced by programs that use the card's partitions. The FAT is mounted only while it is used, so that it is clean if power fails or
-# the card is removed.
+# Sourced by programs that use the card's partitions. The FAT is mounted only while it is used, so that it is clean if
+# power fails or the card is removed.
 
 card=/boot/firmware
 

@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cmath>
 #include <future>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -87,10 +88,10 @@ class Run {
   Scan scan_;
   std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
   FittingReconstruction reconstruction_;
-  PoseChecks check_;                        // of the snapshots added to the reconstruction
-  int added_ = 0;                           // snapshots added to the reconstruction
-  int resumed_ = 0;                         // snapshots that an earlier attempt took
-  bool has_tried_preview_ = false;          // to solve the pose for the preview
+  PoseChecks check_;  // of the snapshots added to the reconstruction
+  int added_ = 0;     // snapshots added to the reconstruction
+  /// Snapshots after which the pose may be solved for the preview.
+  int solves_after_ = 0;
   std::optional<SolvedPose> preview_pose_;  // until `calibrate`, in place of the configured one
   std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
   EarlyModel early_;          // with the configured pose, while another is solved
@@ -149,7 +150,7 @@ bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
 /// Adds the stored snapshots of a resumed scan, in their order, while the platform turns.
 void Run::resume() {
   expect_same_rig(scan_, settings_, rig_);
-  resumed_ = done();
+  solves_after_ = done();
   if (!scan_.laser) {
     const SnapshotSource stored = checked();
     first_readings_ = readings_in(stored.read(0).frame);
@@ -177,7 +178,7 @@ Scan Run::shown(Scan scan) const {
 /// Solves the pose from a part of the turn. With a wrong one, views that disagree carve thin parts
 /// away before one's eyes. The model is built again with the pose from the whole turn.
 void Run::solve_for_preview(const Scan& so_far) {
-  has_tried_preview_ = true;
+  solves_after_ = std::numeric_limits<int>::max();  // once is enough
   const int threads = reconstruction_.options().threads;
   const ScanSolution solution =
       solve_scan(folder_, so_far, readable_snapshots(folder_, so_far, stop_), threads, stop_);
@@ -263,8 +264,8 @@ void Run::add(Add add_to) {
   added_ = done();
   const bool is_preview = done() < settings_.snapshots;  // else the model follows
   // While a device fails, attempts follow each other: none solves before it has taken a stop.
-  const bool solves = is_preview && done() > resumed_ && !has_tried_preview_ && !scan_.laser &&
-                      !scan_.solved && settings_.pose != PoseSource::configured &&
+  const bool solves = is_preview && done() > solves_after_ && !scan_.laser && !scan_.solved &&
+                      settings_.pose != PoseSource::configured &&
                       done() >= std::max(preview_share * settings_.snapshots, preview_stops);
   adding_ = std::async(std::launch::async, [=, so_far = scan_, this, add = std::move(add_to)] {
     add();

@@ -367,16 +367,16 @@ void judge_low(Judgement& judgement, const ScanFigures& scan) {
                 {.code = "too-low",
                  .detail = "what lies on the platform is lower than the scanned space, which could "
                            "begin " +
-                           mm_text(scan.noise_end, text_digits) + " above the platform",
+                           mm_text(scan.below.noise_end, text_digits) + " above the platform",
                  .hint = "Build the model again with a scanned space that begins lower.",
-                 .parameters = {{"noise_end_mm", mm_from_metres(scan.noise_end)}}});
+                 .parameters = {{"noise_end_mm", mm_from_metres(scan.below.noise_end)}}});
 }
 
 /// Judges another pose of a model. Filled surface and dropped parts belong to no single pose.
 /// @param scan  heights in its places are not above this pose's platform
 Quality judge_side(ScanFigures scan, const ModelReport& model) {
   Judgement judgement;
-  scan.noise_end = 0;
+  scan.below.noise_end = 0;
   judge_agreement(judgement, scan);
   judge_height(judgement, scan, {});
   if (scan.platform_height.value_or(0) <= look_height) {
@@ -428,8 +428,8 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
   Judgement judgement;
   const bool is_empty =
       scan.object_pixels < min_object_pixels || model.volume + model.dropped.volume < min_volume;
-  if (scan.low_pixels > min_object_pixels &&
-      (is_empty || scan.low_pixels > mostly_low * scan.object_pixels)) {
+  if (scan.below.pixels > min_object_pixels &&
+      (is_empty || scan.below.pixels > mostly_low * scan.object_pixels)) {
     judge_low(judgement, scan);
     return judgement.take();
   }

@@ -122,12 +122,12 @@ TEST(Judge, LooksAtADarkTopBeforeThePartsThatItCostTheModel) {
 TEST(Judge, LowersTheSpaceForWhatLiesBelowIt) {
   ScanFigures scan = right_scan();
   scan.object_pixels = 40;
-  scan.low_pixels = 1200;
-  scan.noise_end = 0.002;
+  scan.below.pixels = 1200;
+  scan.below.noise_end = 0.002;
   const Quality quality = judge(scan, {});
   EXPECT_EQ(quality.verdict, Verdict::bad);
   EXPECT_EQ(codes(quality), Codes{"too-low"});
-  scan.low_pixels = 60;
+  scan.below.pixels = 60;
   EXPECT_EQ(codes(judge(scan, {})), Codes{"empty"});
 }
 

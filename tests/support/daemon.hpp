@@ -23,8 +23,8 @@ inline nlohmann::json parsed(const Reply& reply) {
   return nlohmann::json::parse(reply.body, nullptr, false);
 }
 
-/// `octurn serve` on the simulated rig, much faster than real time unless `more` has another
-/// --simulate-speed, on a free local port.
+/// `octurn serve` on the simulated rig, with a sensor of the data sheet's optics, much faster than
+/// real time unless `more` has another --simulate-speed, on a free local port.
 class Daemon {
  public:
   explicit Daemon(const std::filesystem::path& folder, std::vector<std::string> more = {},
@@ -41,7 +41,7 @@ class Daemon {
   static std::vector<std::string> command(const std::filesystem::path& folder,
                                           std::vector<std::string> more = {}, int port = 0) {
     put(folder / "web" / "index.html", "<!doctype html><title>Octurn</title>");
-    std::vector<std::string> words{octurn_program(), "serve", "--simulate"};
+    std::vector<std::string> words{octurn_program(), "serve", "--simulate", "--simulate-unit", "0"};
     if (std::ranges::find(more, "--simulate-speed") == more.end()) {
       words.insert(words.end(), {"--simulate-speed", "20"});
     }

@@ -61,6 +61,12 @@ struct Quality {
   bool operator==(const Quality&) const = default;
 };
 
+/// What stops see between the platform's noise and the clip box.
+struct BelowBox {
+  double noise_end = 0;  ///< metres above z = 0: end of the platform's noise
+  double pixels = 0;     ///< mean number at a stop between there and the box's bottom
+};
+
 /// Measurements on the depth images of a scan, with the poses and the clip box of its model.
 struct ScanFigures {
   std::size_t stops = 0;
@@ -83,9 +89,7 @@ struct ScanFigures {
   /// Metres, object's frame: centres of 5 mm cells in which several stops saw the object.
   std::vector<Eigen::Vector3d> seen = {};
   bool by_lines = false;  ///< whether the stops saw lines of lasers
-  /// Mean number of pixels at a stop between the platform's noise and the box's bottom.
-  double low_pixels = 0;
-  double noise_end = 0;  ///< metres above z = 0: end of the platform's noise
+  BelowBox below = {};
   /// Metres above the highest reading of the object: end of a hole in the readings, at most stops.
   double unseen_top = 0;
 };

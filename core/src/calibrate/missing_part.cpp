@@ -32,7 +32,7 @@ std::set<ObjectCell> find_bare_cells(const ScanFigures& scan, const ModelReport&
   const double gap = max_gap * scale + voxels_of_gap * voxel_side(model);
   std::set<ObjectCell> bare;
   for (const Vector3d& point : scan.seen) {
-    const bool is_noise = point.z() - object_cell_side / 2 < scan.noise_end;
+    const bool is_noise = point.z() - object_cell_side / 2 < scan.below.noise_end;
     if (!is_noise && (!model.places.surface || !model.places.surface->has_near(point, gap))) {
       bare.insert(to_object_cell(point));
     }

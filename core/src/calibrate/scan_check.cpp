@@ -93,9 +93,9 @@ void find_low_object(const std::vector<std::size_t>& counts, double platform, do
   for (std::ptrdiff_t by = end; middle + by < index(bottom); ++by) {
     above += at(middle + by) - at(middle - by);
   }
-  figures.noise_end = platform + static_cast<double>(end) * step;
-  figures.low_pixels = std::max(above, 0.0) * ScanCheck::Stop::thinning *
-                       ScanCheck::Stop::thinning / static_cast<double>(figures.stops);
+  figures.below.noise_end = platform + static_cast<double>(end) * step;
+  figures.below.pixels = std::max(above, 0.0) * ScanCheck::Stop::thinning *
+                         ScanCheck::Stop::thinning / static_cast<double>(figures.stops);
 }
 
 /// The hole above the object's highest readings at most stops, metres.

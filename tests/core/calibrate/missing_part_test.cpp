@@ -92,7 +92,7 @@ TEST(MissingPart, IsNoTableThatIsBowed) {
     scan.seen.emplace_back(x, 0.005, 0.0025);
   }
   EXPECT_TRUE(find_missing_part(scan, post_model(0.12)));
-  scan.noise_end = 0.004;
+  scan.below.noise_end = 0.004;
   EXPECT_FALSE(find_missing_part(scan, post_model(0.12)));
 }
 

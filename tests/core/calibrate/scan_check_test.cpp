@@ -147,10 +147,10 @@ TEST(ScanCheck, MeasuresTheHoleInTheReadingsAboveADarkTop) {
 TEST(ScanCheck, CountsWhatLiesBetweenThePlatformsNoiseAndTheBox) {
   const Box high{.min = {-0.14, -0.14, 0.005}, .max = roomy.max};
   const ScanFigures tile = figures(rendered_turn(block({0.08, 0.08, 0.004}), 6), high);
-  EXPECT_GT(tile.low_pixels, 1000);  // of about 2,300 that see the tile
-  EXPECT_LT(tile.noise_end, 0.004);
+  EXPECT_GT(tile.below.pixels, 1000);  // of about 2,300 that see the tile
+  EXPECT_LT(tile.below.noise_end, 0.004);
   const Shape nothing = [](const Eigen::Vector3d&) { return 1.0; };
-  EXPECT_LT(figures(rendered_turn(nothing, 6), high).low_pixels, 60);
+  EXPECT_LT(figures(rendered_turn(nothing, 6), high).below.pixels, 60);
 }
 
 TEST(ScanCheck, KeepsWhereSeveralStopsSawTheObject) {

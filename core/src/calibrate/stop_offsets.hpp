@@ -27,8 +27,8 @@ std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
 std::vector<CalibrationFinding> find_slips(const std::vector<double>& angles,
                                            const StopOffsets& solved);
 
-/// How far the platform had slipped at each stop, radians: the median offset between two slips, less
-/// that before the first.
+/// How far the platform had slipped at each stop, radians: the median offset between two slips,
+/// less that before the first.
 std::vector<double> slipped_angles(const std::vector<CalibrationFinding>& findings,
                                    const StopOffsets& solved);
 

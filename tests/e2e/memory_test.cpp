@@ -220,8 +220,8 @@ TEST(Memory, IsLimitedByTheConfigurationOfTheDaemon) {
 TEST(Memory, OfTheDaemonStaysBelowItsLimitWithARecordedSensor) {
   const TemporaryFolder folder;
   const fs::path turn = folder.path() / "turn";
-  Program record({octurn_program(), "record", "--simulate", "--simulate-speed", "20", "-o", turn,
-                  "--snapshots", "3", "--frames", "2"});
+  Program record({octurn_program(), "record", "--simulate", "--simulate-unit", "0",
+                  "--simulate-speed", "20", "-o", turn, "--snapshots", "3", "--frames", "2"});
   ASSERT_EQ(record.wait(), 0) << record.errors();
   put(folder.path() / "octurn.json", R"({"memory_limit_mb": 48, "threads": 2})");
   Daemon daemon(folder.path(), {"--config", folder.path() / "octurn.json", "--sensor", turn});

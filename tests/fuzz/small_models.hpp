@@ -45,7 +45,8 @@ inline void make_models(const Scan& scan, const SnapshotSource& snapshots) {
     reconstruction->add(snapshots);
     reconstruction->surface({}, [](std::span<const Facet> facets) {
       for (const Facet& facet : facets) {
-        for (const std::array<float, 3> corner : facet.corners) {
+        const auto corners = facet.corners;  // a copy: a facet's members are not aligned
+        for (const std::array<float, 3>& corner : corners) {
           require(std::isfinite(corner[0]) && std::isfinite(corner[1]) && std::isfinite(corner[2]));
         }
       }

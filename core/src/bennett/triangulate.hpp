@@ -31,7 +31,7 @@ void triangulate(const PointGrid& grid, float threshold, Sink sink) {
   const auto width = static_cast<std::size_t>(grid.width);
   const auto height = static_cast<std::size_t>(grid.height);
   for (std::size_t v = 0; v + 1 < height; ++v) {
-    const Eigen::Vector3f* upper = &grid.points[v * width];
+    const Eigen::Vector3f* upper = grid.points.data() + v * width;
     const Eigen::Vector3f* lower = upper + width;
     for (std::size_t u = 0; u + 1 < width; ++u) {
       // The diagonal is a side of both triangles.

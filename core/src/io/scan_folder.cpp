@@ -261,9 +261,11 @@ void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& so
   json document = parse_json(text, ErrorCode::scan_malformed, "scan.json");
   document["calibration"]["solved"] = to_json(solved);
   json& shots = document["snapshots"];
-  for (std::size_t i = 0; i < std::min(slipped.size(), shots.size()); ++i) {
-    if (slipped[i] != 0) {
-      shots[i]["slipped_deg"] = degrees_from_radians(slipped[i]);
+  for (std::size_t i = 0; i < shots.size(); ++i) {
+    if (const double angle = i < slipped.size() ? slipped[i] : 0; angle != 0) {
+      shots[i]["slipped_deg"] = degrees_from_radians(angle);
+    } else {
+      shots[i].erase("slipped_deg");
     }
   }
   write_document(folder, document);

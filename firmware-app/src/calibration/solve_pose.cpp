@@ -100,8 +100,8 @@ bool take_solution(Scan& scan, const ScanSolution& solution) {
   }
   scan.solved = solution.solved;
   const std::vector<double>& slipped = solution.report.slipped;
-  for (std::size_t stop = 0; stop < slipped.size(); ++stop) {
-    scan.shots[stop].slipped = slipped[stop];
+  for (std::size_t stop = 0; stop < scan.shots.size(); ++stop) {
+    scan.shots[stop].slipped = stop < slipped.size() ? slipped[stop] : 0;
   }
   return true;
 }

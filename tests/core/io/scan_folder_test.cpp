@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -217,6 +219,22 @@ TEST(WriteSolvedPose, StandsBesideTheToldOneAndIsThatOfModels) {
   ASSERT_TRUE(again.solved && again.solved->optics);
   EXPECT_EQ(again.solved->optics->value.k1, -0.1);
   EXPECT_EQ(again.solved->optics->sigma.fx, 2);
+}
+
+TEST(WriteSolvedPose, ReplacesTheSlipsOfAnEarlierOne) {
+  const TemporaryFolder folder;
+  write_contract_scan(folder.path());
+  const auto slipped_at = [&](std::size_t shot) {
+    return read_scan(folder.path()).shots.at(shot).slipped;
+  };
+  write_solved_pose(folder.path(), {}, std::array{0.0, 0.03});
+  EXPECT_EQ(slipped_at(0), 0);
+  EXPECT_NEAR(slipped_at(1), 0.03, 1e-9);
+  write_solved_pose(folder.path(), {}, std::array{0.02, 0.0});
+  EXPECT_NEAR(slipped_at(0), 0.02, 1e-9);
+  EXPECT_EQ(slipped_at(1), 0);
+  write_solved_pose(folder.path(), {});
+  EXPECT_EQ(slipped_at(0), 0);
 }
 
 TEST(WriteScan, ReplacesWhatIsNoUtf8InASensorsName) {

@@ -107,4 +107,7 @@ struct JsonLimits {
 nlohmann::json parse_json(std::string_view text, ErrorCode code, const std::string& what,
                           const JsonLimits& limits = {});
 
+/// Whether a text is UTF-8, as JSON must be.
+bool is_utf8(const std::string& text);
+
 }  // namespace octurn

@@ -229,4 +229,13 @@ json parse_json(std::string_view text, ErrorCode code, const std::string& what,
   return document;
 }
 
+bool is_utf8(const std::string& text) {
+  try {
+    static_cast<void>(json(text).dump());  // throws at any other text
+    return true;
+  } catch (const json::type_error&) {
+    return false;
+  }
+}
+
 }  // namespace octurn

@@ -5,11 +5,11 @@
 #include <charconv>
 #include <cstddef>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 
 #include "appliance/wifi_request.hpp"
+#include "octurn/json_object.hpp"
 
 namespace octurn {
 namespace {
@@ -60,16 +60,6 @@ std::optional<std::string> unescaped(std::string_view text) {
     bytes += *byte;
   }
   return bytes;
-}
-
-/// Whether a text is UTF-8, checked by the JSON library, which refuses to write any other.
-bool is_utf8(const std::string& text) {
-  try {
-    nlohmann::json(text).dump();
-    return true;
-  } catch (const nlohmann::json::type_error&) {
-    return false;
-  }
 }
 
 /// Parses a line: bssid, frequency, signal, flags and name, separated by tabs.

@@ -21,11 +21,6 @@ json to_value(const std::string& text) {
   return value.is_discarded() || value.is_structured() ? json(text) : value;
 }
 
-/// Whether a text is UTF-8, as JSON's are.
-bool is_utf8(const std::string& text) {
-  return json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)) == text;
-}
-
 /// Converts `turntable.gear_ratio=4` to `{"turntable": {"gear_ratio": 4}}`; a key may stand deeper,
 /// as `laser.left.line`.
 /// @throws Error "bad-settings"

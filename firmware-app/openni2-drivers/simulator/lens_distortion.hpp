@@ -10,7 +10,11 @@
 
 namespace octurn {
 
-/// The ray (x, y, 1) of a pixel: inverts the simulated lens's distortion by fixed-point iteration.
+/// Inverts Brown's radial distortion by fixed-point iteration: the normalised coordinates of a
+/// pinhole camera that appear at `shown`.
+Eigen::Vector2d undistorted(const Eigen::Vector2d& shown, double k1, double k2);
+
+/// The ray (x, y, 1) of a pixel of the simulated lens.
 Eigen::Vector2d ray_at(const LaserSimulation& simulation, double u, double v);
 
 /// Distorts the picture of a lens without distortion like the simulated lens; black outside of that

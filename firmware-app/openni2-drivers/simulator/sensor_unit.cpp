@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "simulator/camera.hpp"
+#include "simulator/lens_distortion.hpp"
 #include "simulator/surface.hpp"
 #include "simulator/white_noise.hpp"
 
@@ -13,17 +14,6 @@ namespace {
 /// Pixels of the pinhole picture beyond each edge: k1 of -0.18 and a principal point that is 16
 /// pixels off show the corners 50 pixels further out.
 constexpr int beyond_picture = 56;
-
-/// Inverts the distortion: the normalised coordinates of a pinhole camera that appear at `shown`.
-Eigen::Vector2d undistorted(const SensorOptics& optics, const Eigen::Vector2d& shown) {
-  constexpr int steps = 30;  // each leaves less than a third of the error
-  Eigen::Vector2d ray = shown;
-  for (int i = 0; i < steps; ++i) {
-    const double square = ray.squaredNorm();
-    ray = shown / (1 + square * (optics.k1 + square * optics.k2));
-  }
-  return ray;
-}
 
 /// The inverse depth between pixels: of one surface it is affine, and at an edge the nearest
 /// pixel's.
@@ -82,8 +72,8 @@ SensorView::SensorView(const SensorOptics& optics) : optics_(optics) {
   places_.reserve(pixels(camera));
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
-      const Eigen::Vector2d ray =
-          undistorted(optics, {(u - optics.cx) / optics.fx, (v - optics.cy) / optics.fy});
+      const Eigen::Vector2d ray = undistorted(
+          {(u - optics.cx) / optics.fx, (v - optics.cy) / optics.fy}, optics.k1, optics.k2);
       const Eigen::Vector2d place(ray.x() * picture.fx + picture.cx,
                                   ray.y() * picture.fy + picture.cy);
       places_.emplace_back(place.cast<float>());

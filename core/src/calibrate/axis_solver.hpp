@@ -8,6 +8,9 @@
 
 namespace octurn {
 
+/// Sigma of the plane as a loose prior of the axis's direction: the object decides.
+inline constexpr double loose_direction_deg = 0.2;
+
 /// The turning axis as solved from the residuals between stops.
 struct AxisSolution {
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();

@@ -48,9 +48,8 @@ constexpr double settled_sigmas = 0.1;
 // and on tables that real sensors saw 0.27 to 0.82.
 constexpr double max_unevenness = 0.2;
 
-// Sigmas of the plane as a prior of the axis's direction: a loose one, for which the object
-// decides, and one for a platform that is square to its shaft.
-constexpr double loose_direction_deg = 0.2;
+// Sigma of the plane as a prior of the axis's direction, for a platform that is square to its
+// shaft.
 constexpr double tight_direction_deg = 0.02;
 constexpr double wobble_sigmas = 5;
 

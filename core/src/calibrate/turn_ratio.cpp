@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numeric>
 #include <string>
 #include <utility>
 #include <vector>
@@ -35,8 +34,6 @@ constexpr double distinguishable = 0.7;  // of these, by the configured angles
 // One picture confirms itself, and a flat thing that lies still nine tenths of itself turned.
 constexpr double min_still = 0.95;
 constexpr double distinguishable_from_still = 0.93;
-
-constexpr double loose_direction_deg = 0.2;
 
 /// Numbers of readings whose surface another stop could see, and of those whose surface it saw.
 struct Confirmed {
@@ -132,13 +129,9 @@ std::string advise(double ratio) {
 
 }  // namespace
 
-bool TurnRatio::is_as_told() const { return ratio == 1; }
-
 bool TurnRatio::is_alike() const {
   return ratio == 1 && as_told >= min_confirmed && still > distinguishable * as_told;
 }
-
-bool TurnRatio::is_unknown() const { return ratio == 1 && as_told < min_confirmed; }
 
 bool looks_still(const TurnViews& turn, const Isometry3d& levelled, const Isometry3d& solved,
                  int threads) {
@@ -193,7 +186,7 @@ std::optional<CalibrationFinding> find_wrong_turn(const TurnRatio& turn, std::si
         .angle = {},
         .parameters = {{"stops", static_cast<double>(stops)}}};
   }
-  if (!turn.is_as_told()) {
+  if (turn.ratio != 1) {
     return CalibrationFinding{.code = "turn-ratio",
                               .detail = describe(turn.ratio),
                               .hint = advise(turn.ratio),
@@ -203,7 +196,7 @@ std::optional<CalibrationFinding> find_wrong_turn(const TurnRatio& turn, std::si
                                              {turn.ratio < 0 ? "clockwise_deg" : "turned_deg",
                                               example_deg * std::abs(turn.ratio)}}};
   }
-  if (turn.is_unknown() && !turn.is_alike()) {
+  if (turn.as_told < min_confirmed) {
     return CalibrationFinding{
         .code = "turn-unknown",
         .detail = "the stops do not show one object that turned as it should",

@@ -18,12 +18,8 @@ struct TurnRatio {
   double as_told = 0;    ///< with the configured angles
   double still = 0;      ///< if the platform had not turned
 
-  /// Whether the configured angles explain the depth images.
-  bool is_as_told() const;
   /// Whether the object looks the same from all sides: nothing shows how far the platform turned.
   bool is_alike() const;
-  /// Whether no ratio explains the depth images.
-  bool is_unknown() const;
 };
 
 /// Whether the depth images fit much better to a platform that did not turn than to `solved`.

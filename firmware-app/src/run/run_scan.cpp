@@ -130,7 +130,7 @@ bool Run::take_depth(const Stop& at, double angle) {
   const Shot shot{.file = shot_file(done()), .angle = angle, .lost_share = rig_.take_lost_share()};
   store_snapshot(folder_, scan_, shot, *frame);
   observer_.on_progress(Phase::capturing, done());
-  add([frame = *std::move(frame), angle = stored_angle(angle), so_far = scan_, this] {
+  add([frame = *std::move(frame), angle = stored_angle(angle), this](const Scan& so_far) {
     const Snapshot added = make_snapshot(frame, shown(so_far), {.angle = angle});
     check_.add(so_far.shots.size() - 1, added);
     (*reconstruction_).add(added, stop_);
@@ -166,7 +166,7 @@ void Run::resume() {
 }
 
 void Run::add_stored() {
-  add([stored = checked(), this] { (*reconstruction_).add(stored, stop_); });
+  add([stored = checked(), this](const Scan&) { (*reconstruction_).add(stored, stop_); });
 }
 
 /// The scan with the pose that its preview has.
@@ -231,7 +231,7 @@ void Run::rebuild() {
                                }};
   do {
     *read = 0;
-    add([counted, this] { (*reconstruction_).add(counted, stop_); });
+    add([counted, this](const Scan&) { (*reconstruction_).add(counted, stop_); });
   } while (!wait_for_added([&] { observer_.on_rebuilt(std::min(read->load(), done())); }));
   observer_.on_rebuilt(done());
 }
@@ -255,6 +255,7 @@ bool Run::wait_for_added(Tell tell) {
   }
 }
 
+/// @param add_to  adds to the reconstruction on a thread of its own; called with the scan so far
 template <typename Add>
 void Run::add(Add add_to) {
   if (!wait_for_added([this] { observer_.on_wait(); })) {
@@ -268,7 +269,7 @@ void Run::add(Add add_to) {
                       settings_.pose != PoseSource::configured &&
                       done() >= std::max(preview_share * settings_.snapshots, preview_stops);
   adding_ = std::async(std::launch::async, [=, so_far = scan_, this, add = std::move(add_to)] {
-    add();
+    add(so_far);
     if (solves) {
       solve_for_preview(so_far);
     }

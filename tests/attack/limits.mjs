@@ -124,7 +124,8 @@ try {
   require(status === 0, `the daemon ends with ${status}`);
   console.log(`counted: limits: of ${Math.round(share * machine)} MB and ${tasks} tasks at most ` +
     `${peak().toFixed(0)} MB, caches included, and ${threads} tasks; ` +
-    `${rounds} rounds, ${counts.models} models, ${counts.archives} archives, ${counts.files} files; nothing killed or refused`);
+    `${rounds} rounds, ${counts.models} models, ${counts.archives} archives, ${counts.files} files; ` +
+    'nothing killed or refused');
 } catch (error) {
   console.error(`limits: ${error.message}\n${daemon.log}`);
   await daemon.end('SIGKILL'); // so that its group can be removed

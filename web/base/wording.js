@@ -32,7 +32,8 @@ const shown = (parameters) => Object.fromEntries(Object.entries(parameters).map(
 const keyOf = (code, parameters) => [code, ...Object.keys(parameters).sort()].join('.');
 
 /** Findings of a calibration that have another code in a verdict. */
-const turntable = new Map([['off_deg.stop', 'slip.off_deg.stop'], ['turn_deg', 'turn-not-whole.turn_deg'], ['stops', 'still.stops']]);
+const turntable = new Map([
+  ['off_deg.stop', 'slip.off_deg.stop'], ['turn_deg', 'turn-not-whole.turn_deg'], ['stops', 'still.stops']]);
 const sameAs = new Map([
   ...['stops-disagree', 'turntable'].flatMap((code) => [...turntable].map(([names, key]) => [`${code}.${names}`, key])),
   ...['clockwise_deg.told_deg', 'told_deg.turned_deg'].map((names) => [`turn-ratio.${names}`, `turntable.${names}`]),

@@ -144,9 +144,11 @@ void carry_out(App& app, LensChange change) {
 }
 
 void start_lens(App& app, JsonObject& keys) {
+  const double square_mm =
+      keys.number("square_mm", min_board_square_mm, max_board_square_mm).value_or(board_square_mm);
   keys.refuse_unread();
   expect_no_update(app);
-  if (!app.scanner.look_at_board()) {
+  if (!app.scanner.look_at_board(metres_from_mm(square_mm))) {
     refuse_busy();
   }
 }

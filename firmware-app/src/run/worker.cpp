@@ -802,7 +802,8 @@ void Worker::introduce_sensor() {
   introduced_ = since;
   const bool is_camera = rig_.laser() != nullptr;
   KnownSensor known{.serial = is_camera ? rig_.camera().serial() : rig_.sensor().serial(),
-                    .since = since};
+                    .since = since,
+                    .has_infrared = !is_camera && rig_.sensor().has_infrared()};
   try {
     if (!is_camera) {
       ports_.calibration.drop_without_optics(known.serial);

@@ -44,6 +44,9 @@ class DepthSensor {
   ///               if the device is gone
   virtual std::optional<TimedFrame> read(const std::stop_token& stop) = 0;
 
+  /// Whether the sensor shows infrared pictures of the size of its depth frames.
+  virtual bool has_infrared() const { return false; }
+
   /// Waits for the next infrared picture. The first one stops the depth stream, and the next depth
   /// frame the infrared one.
   /// @return nothing if a stop was requested first

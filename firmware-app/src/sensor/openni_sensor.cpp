@@ -99,6 +99,7 @@ class OpenNiSensor final : public DepthSensor, public PacketLogger {
   const Intrinsics& intrinsics() const override { return intrinsics_; }
   std::string serial() const override;
   std::optional<TimedFrame> read(const std::stop_token& stop) override;
+  bool has_infrared() const override { return find_infrared_mode().has_value(); }
   std::optional<Picture> read_infrared(const std::stop_token& stop) override;
   std::optional<Tilt> tilt() const override;
   std::optional<PacketCounts> packet_counts() const override;
@@ -114,6 +115,7 @@ class OpenNiSensor final : public DepthSensor, public PacketLogger {
  private:
   void simulate(int property, double value);
   void open_stream(const std::string& uri);
+  std::optional<openni::VideoMode> find_infrared_mode() const;
   void show_depth();
   void show_infrared();
   bool wait_for(openni::VideoStream& stream, const std::stop_token& stop);
@@ -167,6 +169,23 @@ std::chrono::duration<double> OpenNiSensor::sensor_time() const {
                    : steady_clock::now().time_since_epoch();
 }
 
+/// Finds the mode of 8-bit pictures of the depth frames' size.
+std::optional<openni::VideoMode> OpenNiSensor::find_infrared_mode() const {
+  const openni::SensorInfo* const camera = device_.getSensorInfo(openni::SENSOR_IR);
+  if (camera == nullptr) {
+    return std::nullopt;
+  }
+  const auto& modes = camera->getSupportedVideoModes();
+  for (int i = 0; i < modes.getSize(); ++i) {
+    if (modes[i].getPixelFormat() == openni::PIXEL_FORMAT_GRAY8 &&
+        modes[i].getResolutionX() == intrinsics_.width &&
+        modes[i].getResolutionY() == intrinsics_.height) {
+      return modes[i];
+    }
+  }
+  return std::nullopt;
+}
+
 void OpenNiSensor::show_depth() {
   if (shows_infrared_) {
     infrared_.stop();
@@ -180,15 +199,12 @@ void OpenNiSensor::show_infrared() {
     return;
   }
   if (!infrared_.isValid()) {
-    if (!device_.hasSensor(openni::SENSOR_IR)) {
+    const auto mode = find_infrared_mode();
+    if (!mode) {
       DepthSensor::read_infrared({});  // throws
     }
     expect_ok(infrared_.create(device_, openni::SENSOR_IR), "find its infrared stream");
-    openni::VideoMode mode;
-    mode.setPixelFormat(openni::PIXEL_FORMAT_GRAY8);
-    mode.setResolution(intrinsics_.width, intrinsics_.height);
-    mode.setFps(30);
-    expect_ok(infrared_.setVideoMode(mode), "set its infrared mode");
+    expect_ok(infrared_.setVideoMode(*mode), "set its infrared mode");
     expect_ok(infrared_.setMirroringEnabled(false), "switch off its mirroring");
   }
   stream_.stop();

@@ -21,6 +21,7 @@ class WrappedSensor : public DepthSensor {
   std::optional<TimedFrame> read(const std::stop_token& stop) override {
     return sensor_->read(stop);
   }
+  bool has_infrared() const override { return sensor_->has_infrared(); }
   std::optional<Picture> read_infrared(const std::stop_token& stop) override {
     return sensor_->read_infrared(stop);
   }

@@ -67,6 +67,7 @@ Response send_calibration(App& app, int status) {
   body["sensor_map"] = sensor->map ? to_json(*sensor->map) : json();
   body["sensor_on_s"] = sensor->since ? json(std::floor(open.count())) : json();
   body["lens"] = lens_json(app, sensor->lens);
+  body["infrared"] = sensor->has_infrared;
   body["optics"] = optics_json(sensor->optics);
   body["run"] = *run ? to_json(**run) : json();
   return json_response(body, status);

@@ -1,5 +1,6 @@
 #include "capture/board_views.hpp"
 
+#include <chrono>
 #include <optional>
 #include <utility>
 
@@ -38,17 +39,25 @@ class HeldBoard {
   int pictures_ = 0;
 };
 
-/// @return nothing if stopped first
+/// The mean of frames that are taken from now on. @return nothing if stopped first
 std::optional<DepthFrame> mean_depth(DepthSensor& sensor, const std::stop_token& stop) {
+  const auto begin = std::chrono::steady_clock::now();
   std::vector<DepthFrame> frames;
   while (frames.size() < depth_frames) {
     std::optional<TimedFrame> timed = sensor.read(stop);
     if (!timed) {
       return std::nullopt;
     }
-    frames.push_back(std::move(timed->frame));
+    if (timed->time > begin) {
+      frames.push_back(std::move(timed->frame));
+    }
   }
   return merge_frames(frames, DepthFilter::average);
+}
+
+/// A picture that is taken from now on: the first one may still be from before the depth frames.
+std::optional<Picture> new_picture(DepthSensor& sensor, const std::stop_token& stop) {
+  return sensor.read_infrared(stop) ? sensor.read_infrared(stop) : std::nullopt;
 }
 
 }  // namespace
@@ -67,7 +76,7 @@ std::vector<DepthBoardView> take_board_views(
     const bool is_view = watch.see(*picture);
     if (is_view) {
       const std::optional<DepthFrame> depth = mean_depth(sensor, stop);
-      const std::optional<Picture> after = depth ? sensor.read_infrared(stop) : std::nullopt;
+      const std::optional<Picture> after = depth ? new_picture(sensor, stop) : std::nullopt;
       if (after && watch.shows_last_view(*after)) {
         const BoardView& corners = watch.views().back();
         views.push_back(

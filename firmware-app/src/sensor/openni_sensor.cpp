@@ -89,6 +89,7 @@ class OpenNiSensor final : public DepthSensor, public PacketLogger {
     load_sensor_drivers();
     open_stream(uri);
     intrinsics_ = to_intrinsics(stream_);
+    infrared_mode_ = find_infrared_mode();
     name_ = device_.getDeviceInfo().getName();
     has_steady_stamps_ = has_octurns_driver(device_.getDeviceInfo().getUri());
     is_simulated_ = device_.isPropertySupported(platform_angle_property);
@@ -99,7 +100,7 @@ class OpenNiSensor final : public DepthSensor, public PacketLogger {
   const Intrinsics& intrinsics() const override { return intrinsics_; }
   std::string serial() const override;
   std::optional<TimedFrame> read(const std::stop_token& stop) override;
-  bool has_infrared() const override { return find_infrared_mode().has_value(); }
+  bool has_infrared() const override { return infrared_mode_.has_value(); }
   std::optional<Picture> read_infrared(const std::stop_token& stop) override;
   std::optional<Tilt> tilt() const override;
   std::optional<PacketCounts> packet_counts() const override;
@@ -115,7 +116,7 @@ class OpenNiSensor final : public DepthSensor, public PacketLogger {
  private:
   void simulate(int property, double value);
   void open_stream(const std::string& uri);
-  std::optional<openni::VideoMode> find_infrared_mode() const;
+  std::optional<openni::VideoMode> find_infrared_mode();
   void show_depth();
   void show_infrared();
   bool wait_for(openni::VideoStream& stream, const std::stop_token& stop);
@@ -125,6 +126,7 @@ class OpenNiSensor final : public DepthSensor, public PacketLogger {
 
   openni::Device device_ = {};
   openni::VideoStream stream_ = {};
+  std::optional<openni::VideoMode> infrared_mode_ = {};
   openni::VideoStream infrared_ = {};  // created for the first infrared picture
   bool shows_infrared_ = false;        // in place of depth: one stream at a time
   std::string name_ = {};
@@ -170,7 +172,7 @@ std::chrono::duration<double> OpenNiSensor::sensor_time() const {
 }
 
 /// Finds the mode of 8-bit pictures of the depth frames' size.
-std::optional<openni::VideoMode> OpenNiSensor::find_infrared_mode() const {
+std::optional<openni::VideoMode> OpenNiSensor::find_infrared_mode() {
   const openni::SensorInfo* const camera = device_.getSensorInfo(openni::SENSOR_IR);
   if (camera == nullptr) {
     return std::nullopt;
@@ -199,12 +201,11 @@ void OpenNiSensor::show_infrared() {
     return;
   }
   if (!infrared_.isValid()) {
-    const auto mode = find_infrared_mode();
-    if (!mode) {
+    if (!infrared_mode_) {
       DepthSensor::read_infrared({});  // throws
     }
     expect_ok(infrared_.create(device_, openni::SENSOR_IR), "find its infrared stream");
-    expect_ok(infrared_.setVideoMode(*mode), "set its infrared mode");
+    expect_ok(infrared_.setVideoMode(*infrared_mode_), "set its infrared mode");
     expect_ok(infrared_.setMirroringEnabled(false), "switch off its mirroring");
   }
   stream_.stop();

@@ -35,7 +35,7 @@ constexpr double most_move = 0.35;          // of a square's side, from the pred
 constexpr double max_step = 0.15;           // squares
 constexpr double min_square = 6;            // pixels: smaller ones are blurred away
 constexpr double min_contrast_share = 0.7;  // of the median: on the board's edge it is half of it
-constexpr int completions = 2;
+constexpr int most_completions = 8;         // each adds up to two rows and columns on each side
 
 /// The maxima, or the minima, over discs.
 template <typename Better>
@@ -267,11 +267,16 @@ BoardView alternating(const std::vector<LatticeSaddle>& saddles, const BoardView
 BoardView find_dotted_board(const Picture& picture) {
   const GreyImage image = evened(picture);
   BoardView view = find_seeds(image);
-  for (int i = 0; i < completions; ++i) {
+  for (int i = 0; i < most_completions; ++i) {
     if (view.size() < min_seeds) {
       return {};
     }
-    view = alternating(fit_lattice(image, view), view);
+    BoardView whole = alternating(fit_lattice(image, view), view);
+    const bool is_complete = i > 0 && whole.size() <= view.size();
+    view = std::move(whole);
+    if (is_complete) {
+      break;
+    }
   }
   return view.size() < min_board_corners ? BoardView{} : view;
 }

@@ -110,10 +110,11 @@ BoardView corners_of(const TrueSensor& sensor, const Eigen::Isometry3d& board, R
       const Vector2d pixel =
           shown(scene.lens, board * Vector3d(column * scene.side, row * scene.side, 0));
       if (pixel.x() > 8 && pixel.y() > 8 && pixel.x() < 631 && pixel.y() < 471) {
-        view.push_back(
-            {.pixel = pixel + sensor.corner_noise * Vector2d(random.normal(), random.normal()),
-             .column = column,
-             .row = row});
+        const double across = random.normal();  // in this order with any compiler
+        const double down = random.normal();
+        view.push_back({.pixel = pixel + sensor.corner_noise * Vector2d(across, down),
+                        .column = column,
+                        .row = row});
       }
     }
   }
@@ -203,7 +204,9 @@ Picture with_dots(const Picture& picture, double ambient) {
   std::vector<double> light(picture.samples.size(), ambient);
   for (int v = 0; v < picture.height; v += 3) {
     for (int u = 0; u < picture.width; u += 3) {
-      const Vector2d dot(u + 3 * random.uniform(), v + 3 * random.uniform());
+      const double across = 3 * random.uniform();  // in this order with any compiler
+      const double down = 3 * random.uniform();
+      const Vector2d dot(u + across, v + down);
       const double bright = 1 + random.uniform();
       for (int y = v - 2; y < v + 5; ++y) {
         for (int x = u - 2; x < u + 5; ++x) {

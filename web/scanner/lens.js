@@ -80,10 +80,14 @@ function showFigures(calibration) {
 
 /** Words the card for a Kinect. */
 function nameKinect() {
-  for (const [general, own] of [['lens.title', 'lens.kinect'], ['lens.about', 'lens.kinect-about'], ['lens.hold', 'lens.kinect-hold']]) {
-    const node = part(element('lens'), `[data-text="${general}"]`);
-    node.dataset.text = own;
-    setText(node, text(own));
+  /** @type {Record<string, string>} */
+  const own = {'lens.title': 'lens.kinect', 'lens.about': 'lens.kinect-about', 'lens.hold': 'lens.kinect-hold'};
+  for (const node of /** @type {NodeListOf<HTMLElement>} */ (element('lens').querySelectorAll('[data-text]'))) {
+    const key = own[node.dataset.text ?? ''];
+    if (key) {
+      node.dataset.text = key;
+      setText(node, text(key));
+    }
   }
   part(element('lens'), 'a[href*="help/"]').setAttribute('href', 'help/calibration.html#the-optics-from-a-printed-board');
 }

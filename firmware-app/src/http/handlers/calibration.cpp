@@ -259,7 +259,7 @@ Response send_sensor_map(App& app) {
 
 Response send_points(App& app) {
   const auto camera = app.scanner.camera_frame();
-  if (camera->picture.width > 0) {
+  if (camera->picture.width > 0 && app.rig.laser) {
     throw Error(ErrorCode::not_found, "a camera with lasers measures no depth",
                 "GET /api/v1/preview/depth.png shows what it sees.");
   }
@@ -268,7 +268,7 @@ Response send_points(App& app) {
   const double scale = app.scanner.calibration().in_force({}).depth_scale;
   Intrinsics lens = scaled(camera->lens, scale);
   DepthFrame frame = camera->frame;
-  if (!known.empty()) {
+  if (!known.empty() && frame.width > 0) {  // none while a Kinect looks at a board
     frame = rectified(std::move(frame), lens, known.front().optics.value);
     lens = rectified(lens, known.front().optics.value);
   }

@@ -39,6 +39,11 @@ inline constexpr int platform_angle_property = 0x4F430001;
 /// 0 turns it back to the platform. A sensor whose URI has a wall ignores it.
 inline constexpr int wall_property = 0x4F430003;
 
+/// Property of type double, written by the program: the number of the hold in which somebody shows
+/// a printed board to the sensor, a whole number from 1; 0 puts it away.
+inline constexpr int board_property = 0x4F430005;
+inline constexpr int max_board_hold = 100'000;
+
 /// Property of type double, written by the program: the number of the object's pose, a whole number
 /// up to `max_object_pose`; 0 is the initial pose.
 inline constexpr int object_pose_property = 0x4F430004;

@@ -105,5 +105,20 @@ TEST(BoardWatch, TakesEnoughOfAWavedBoardForItsLens) {
   EXPECT_LT(report.rms, 0.1);
 }
 
+TEST(BoardWatch, ForgetsAViewWhoseBoardMoved) {
+  const BoardBeforeCamera board;
+  BoardWatch watch(LaserSettings{}.lens);
+  watch.see(board.picture(0));
+  watch.see(board.picture(1));
+  ASSERT_TRUE(watch.see(board.picture(2)));
+  EXPECT_TRUE(watch.shows_last_view(board.picture(3)));
+  EXPECT_FALSE(watch.shows_last_view(board.picture(8)));  // of the next pose
+  watch.drop_last_view();
+  EXPECT_EQ(watch.look().taken, 0);
+  EXPECT_EQ(watch.look().coverage, LensCoverage{});
+  EXPECT_EQ(watch.look().advice, BoardAdvice::hold_still);
+  EXPECT_TRUE(watch.see(board.picture(4)));  // it is a new place again
+}
+
 }  // namespace
 }  // namespace octurn

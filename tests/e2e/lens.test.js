@@ -92,12 +92,23 @@ test('a look at the board is cancelled, or solved too early and refused in words
   assert.deepEqual(faults, []);
 });
 
-test('a rig with a depth sensor has no such card', async (t) => {
-  const scanner = await startScanner(t);
-  const {page} = await openPage(await openBrowser(t), `${scanner.url}#calibrate`);
-  await page.getByText('Not done for this sensor.').waitFor();
-  assert.equal(await page.locator('#lens').isVisible(), false);
+test('a board is shown to a Kinect\'s infrared camera, and views are counted', async (t) => {
+  const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '4']});
+  const browser = await openBrowser(t);
+  const {page, faults} = await openPage(browser, `${scanner.url}#calibrate`);
+  await page.getByRole('heading', {name: 'The Kinect’s optics'}).waitFor();
+  await page.getByText('Not done for this sensor.').waitFor();  // its walls are offered as well
+  await page.getByText('Not measured with a board yet.').waitFor();
   assert.equal((await ask(scanner, 'calibration')).lens, null);
   const refused = await fetch(`${scanner.url}api/v1/calibration`, {method: 'PATCH', headers: {'Content-Type': 'application/json'}, body: '{"lens": "keep"}'});
   assert.equal(refused.status, 404);
+
+  await page.getByRole('button', {name: 'Show the board'}).click();
+  await page.getByText(/[1-9] of 24 pictures taken/).waitFor();
+  await picture(page, 'lens-kinect');
+  assert.deepEqual(await complaints(page), []);
+  await page.locator('#lens-cancel').click();
+  await page.getByText('Cancelled').first().waitFor();
+  await page.getByText('Not measured with a board yet.').waitFor();
+  assert.deepEqual(faults, []);
 });

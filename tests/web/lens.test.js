@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf, missingPart} from '../../web/scanner/lens_words.js';
+import {foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf, missingPart, opticsFiguresOf} from '../../web/scanner/lens_words.js';
 import {calibration} from './examples.js';
 
 const told = {fx: 682.4, fy: 682.4, cx: 409.5, cy: 307.5, k1: 0, k2: 0};
@@ -60,4 +60,16 @@ test('a lens that is refused, cancelled or failed is not to be kept', () => {
   assert.deepEqual([lensOutcomeOf(failed).tone, lensOutcomeOf(failed).detail, lensOutcomeOf(failed).hint], ['bad', 'The camera is gone.', 'Plug it in.']);
   assert.equal(lensOutcomeOf(during({})), null);
   assert.equal(lensOutcomeOf({...calibration, run: {...run, kind: 'turn', state: 'done'}}), null);
+});
+
+test('a Kinect\'s optics have a scale, and nothing configured', () => {
+  const optics = {fx: 590.77, fy: 590.77, cx: 331.67, cy: 244.82, k1: -0.0623, k2: 0.007, depth_scale: 1.01405, depth_offset_per_m: 0.004};
+  const record = {...optics, sigma: {...optics, fx: 1.05, depth_scale: 0.0023}};
+  const figures = opticsFiguresOf({...report, optics: record});
+  assert.deepEqual([figures[0].text, figures[0].configured], ['590.77 ± 1.05', '']);
+  assert.equal(figures.at(-1).text, '1.0141 ± 0.0023');
+  assert.deepEqual(opticsFiguresOf({...report, optics: null}), []);
+  assert.match(keptText({...calibration, lens: null, optics: null}), /Not measured/);
+  const kept = {...record, source: 'board', at: '2026-11-28T22:47:46Z', history: []};
+  assert.match(keptText({...calibration, lens: null, optics: kept}), /Measured with a board/);
 });

@@ -36,6 +36,7 @@ import {json, sending} from './api.js';
  * @property {Lens | null} sigma
  * @property {number | null} rms_px
  * @property {number} views
+ * @property {(Optics & {sigma: Optics}) | null} [optics]  of a Kinect
  *
  * @typedef {{advice: 'show' | 'hold-still' | 'tilt' | 'reach' | 'turn', corners: number[][], coverage: number[]}} BoardLook
  *
@@ -52,12 +53,13 @@ import {json, sending} from './api.js';
  * @property {{code: string, detail: string, hint: string} | null} error
  *
  * @typedef {{fx: number, fy: number, cx: number, cy: number, k1: number, k2: number, depth_scale: number, depth_offset_per_m: number}} Optics
- * @typedef {Optics & {sigma: Optics, source: 'turn' | 'scan', at: string}} OpticsRecord
+ * @typedef {Optics & {sigma: Optics, source: 'turn' | 'scan' | 'board', at: string}} OpticsRecord
  *
  * @typedef {PoseRecord & {
  *   shift_mm: number | null, tilt_deg: number | null,
  *   sensor_map: {serial: string, at: string, rms_before: number, rms_after: number} | null,
  *   sensor_on_s: number | null,
+ *   infrared: boolean,
  *   optics: (OpticsRecord & {history: OpticsRecord[]}) | null,
  *   lens: {told: Lens, kept: (Lens & {serial: string, at: string, rms_px: number}) | null} | null,
  *   history: PoseRecord[], run: CalibrationRun | null}} Calibration

@@ -32,7 +32,7 @@ const isWatched = () => here() === 'calibrate' && !document.hidden;
 /** @param {unknown} error */
 const problemOf = (error) => error instanceof api.Problem ? error : new api.Problem('page', String(error));
 
-/** @type {Promise<void> | null} the card for the lens of a camera with lasers; other sensors need none */
+/** @type {Promise<void> | null} the card for the lens of a camera with lasers, or of a Kinect's infrared camera; other sensors need none */
 let lensCard = null;
 
 /** @param {Calibration} news */
@@ -40,8 +40,8 @@ function see(news) {
   calibration = news;
   // A camera with lasers has no depth picture, so the cards for walls, known lengths and adjustment by hand are hidden.
   ['flatten', 'by-hand', 'known-length'].forEach((id) => show(element(id), !news.lens));
-  if (news.lens) {
-    lensCard ??= prepareLens(act);
+  if (news.lens || news.infrared) {
+    lensCard ??= prepareLens(act, news.infrared);
     lensCard.then(() => showLens(calibration ?? news));
   }
   showCalibration(news);

@@ -1,12 +1,13 @@
-// The lens calibration of a camera with lasers, on the page Calibrate: a board is held in front of the camera, and the solved lens
-// is kept or discarded. The fragment is fetched if the scanner has such a camera.
+// The lens calibration of a camera with lasers, or of a Kinect's infrared camera, on the page Calibrate: a board is held in front of
+// the camera, and the solved lens is kept or discarded. The fragment is fetched if the scanner has such a camera.
 
 import * as api from '../api/api.js';
 import * as requests from '../api/api_calibration.js';
 import {showNotice} from './calibrate_view.js';
 import {element, part, setText, show} from '../base/dom.js';
 import {awaitFragment} from '../base/fragment.js';
-import {foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf} from './lens_words.js';
+import {foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf, opticsFiguresOf} from './lens_words.js';
+import {text} from '../base/texts.js';
 
 /** @typedef {import('../api/api_calibration.js').Calibration} Calibration */
 
@@ -60,7 +61,7 @@ async function drawPicture() {
 /** @param {Calibration} calibration */
 function showFigures(calibration) {
   const found = foundLens(calibration);
-  const rows = found && calibration.lens ? lensFiguresOf(found, calibration.lens.told) : [];
+  const rows = !found ? [] : calibration.lens ? lensFiguresOf(found, calibration.lens.told) : opticsFiguresOf(found);
   show(element('lens-figures'), rows.length > 0);
   element('lens-figures').replaceChildren(...rows.map(({label, text, configured}) => {
     const row = document.createElement('div');
@@ -75,6 +76,20 @@ function showFigures(calibration) {
     return row;
   }));
   show(element('lens-answers'), found !== null);
+}
+
+/** Words the card for a Kinect. */
+function nameKinect() {
+  /** @type {Record<string, string>} */
+  const own = {'lens.title': 'lens.kinect', 'lens.about': 'lens.kinect-about', 'lens.hold': 'lens.kinect-hold'};
+  for (const node of /** @type {NodeListOf<HTMLElement>} */ (element('lens').querySelectorAll('[data-text]'))) {
+    const key = own[node.dataset.text ?? ''];
+    if (key) {
+      node.dataset.text = key;
+      setText(node, text(key));
+    }
+  }
+  part(element('lens'), 'a[href*="help/"]').setAttribute('href', 'help/calibration.html#the-optics-from-a-printed-board');
 }
 
 /** Shows the state of the lens calibration. @param {Calibration} calibration */
@@ -101,9 +116,13 @@ export function showLens(calibration) {
 /**
  * Loads the card, once.
  * @param {(failure: string, action: () => Promise<unknown>, notice: string) => Promise<void>} act  sends a request, and shows a refusal in a notice
+ * @param {boolean} isKinect
  */
-export async function prepareLens(act) {
+export async function prepareLens(act, isKinect) {
   await awaitFragment(element('lens'), 'lens.html');
+  if (isKinect) {
+    nameKinect();
+  }
   const click = (/** @type {string} */ id, /** @type {string} */ failure, /** @type {() => Promise<unknown>} */ action) =>
     part(element('lens'), `#${id}`).addEventListener('click', () => act(failure, action, 'lens-problem'));
   click('lens-begin', 'lens.not-begun', () => requests.measure({kind: 'lens'}));

@@ -13,8 +13,11 @@ const parts = 3;  // parts per side of the picture that have names
 const usualDistance = 300;  // mm from camera to object, at which errors are shown in mm
 
 /** @param {Calibration} calibration */
-export function keptText({lens}) {
-  const kept = lens?.kept;
+export function keptText({lens, optics}) {
+  if (!lens) {
+    return optics?.source === 'board' ? text('lens.kinect-kept', {when: when(optics.at)}) : text('lens.kinect-unknown');
+  }
+  const kept = lens.kept;
   return kept ? text('lens.kept', {when: when(kept.at), serial: kept.serial, rms: fixed(kept.rms_px, 2)}) : text('lens.configured');
 }
 
@@ -99,5 +102,19 @@ export function lensFiguresOf({lens, sigma}, configured) {
   return [
     row(text('lens.focal-across'), 'fx', 2), row(text('lens.focal-down'), 'fy', 2), row(text('lens.axis-column'), 'cx', 2), row(text('lens.axis-row'), 'cy', 2),
     row('k1', 'k1', 4), row('k2', 'k2', 4),
+  ];
+}
+
+/** A Kinect's optics, as found. @param {LensReport} report @returns {{label: string, text: string, configured: string}[]} */
+export function opticsFiguresOf({optics}) {
+  if (!optics) {
+    return [];
+  }
+  const row = (/** @type {string} */ label, /** @type {'fx' | 'cx' | 'cy' | 'k1' | 'depth_scale'} */ key, /** @type {number} */ digits) => ({
+    label, text: text('lens.figure', {value: fixed(optics[key], digits), sigma: fixed(optics.sigma[key], digits)}), configured: '',
+  });
+  return [
+    row(text('lens.focal'), 'fx', 2), row(text('lens.axis-column'), 'cx', 2), row(text('lens.axis-row'), 'cy', 2), row('k1', 'k1', 4),
+    row(text('lens.depth-scale'), 'depth_scale', 4),
   ];
 }

@@ -62,6 +62,13 @@ using LensCoverage = std::array<bool, std::size_t{lens_cells} * lens_cells>;
 /// Adds the cells of one view. @param width, height  of the picture, pixels
 void add_view(LensCoverage& coverage, const BoardView& view, int width, int height);
 
+/// A board's pose in one of several views.
+struct FoundBoard {
+  std::size_t view = 0;
+  /// X of the board's frame counts columns, Y rows; lengths are in squares.
+  Eigen::Isometry3d camera_from_board = Eigen::Isometry3d::Identity();
+};
+
 /// A camera's lens, as solved from views of a board.
 struct LensReport {
   bool accepted = false;
@@ -73,6 +80,18 @@ struct LensReport {
   double rms = 0;           ///< pixels, of the reprojection errors
   double tilt = 0;          ///< radians, the largest angle between two of the boards
   LensCoverage coverage = {};
+  std::vector<FoundBoard> boards = {};  ///< of the views used
+};
+
+enum class PixelShape {
+  any,     ///< fx and fy are found each
+  square,  ///< fx = fy
+};
+
+/// How a lens is solved, and judged.
+struct LensRules {
+  PixelShape shape = PixelShape::any;
+  double max_rms = 0.6;  ///< pixels, at a width of 820
 };
 
 /// Finds focal lengths, principal point and distortion of a lens from views of one flat board
@@ -81,9 +100,66 @@ struct LensReport {
 ///
 /// It is refused if fewer than 5 views show a board, the boards are within 20 degrees of parallel,
 /// sigma of a focal length exceeds 0.3 %, corners were seen in less than 85 % of the cells, the rms
-/// exceeds 0.6 pixels at a width of 820, or the distortion is not one-to-one within the picture.
+/// exceeds the limit, or the distortion is not one-to-one within the picture.
 ///
 /// @param width, height  pixels, of the pictures
-LensReport calibrate_lens(std::span<const BoardView> views, int width, int height);
+LensReport calibrate_lens(std::span<const BoardView> views, int width, int height,
+                          const LensRules& rules = {});
+
+/// The same as `find_board` for the infrared picture of a sensor that projects dots, also where
+/// these are the only light.
+///
+/// The gaps between dots are closed, and the picture is smoothed and reduced, until `find_board`'s
+/// lattice appears. Then a model of four squares is fitted to the picture about each corner of the
+/// lattice, found or not: as many of its dots as possible count. A corner is kept if its squares
+/// alternate like the others, with at least 0.7 of their contrast. Corners are found within 0.4
+/// pixels (standard deviation) where dots are the only light.
+BoardView find_dotted_board(const Picture& picture);
+
+/// A depth that a sensor reports near a corner of a board.
+struct BoardDepth {
+  Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< of the depth image
+  double inverse_depth = 0;                         ///< 1/m, as reported
+};
+
+/// A board that is held still before a depth sensor.
+struct DepthBoardView {
+  BoardView corners = {};               ///< in the infrared picture
+  std::vector<BoardDepth> depths = {};  ///< in the depth image
+};
+
+/// A pixel of the depth image shows what the infrared picture shows this far to the right and
+/// below, pixels: a Kinect v1 correlates windows whose corner, not whose middle, gives the depth
+/// its place. Measured as 4.8 and 3.9 by Konolige and Mihelich, "Technical description of Kinect
+/// calibration" (ROS, 2011); ROS's drivers have 5 and 4, "from 9x7 correlation window".
+inline const Eigen::Vector2d infrared_shift{4.8, 3.9};
+
+/// Takes the depths near a board's corners: of each, the mean of the readings within 4 pixels.
+/// @param sensor  as the sensor tells
+/// @throws std::invalid_argument  if the frame's size is not that of the intrinsics
+std::vector<BoardDepth> board_depths(const BoardView& corners, const DepthFrame& frame,
+                                     const Intrinsics& sensor);
+
+/// The optics of a depth sensor, as solved from views of a board.
+struct DepthOpticsReport {
+  LensReport lens = {};      ///< of the infrared camera; its verdict and reason count for both
+  SolvedOptics optics = {};  ///< if accepted
+  Eigen::Vector2d shift = infrared_shift;  ///< of the infrared picture, as found, pixels
+  double depth_rms = 0;                    ///< 1/m, of the reported inverse depths, after the fit
+  int depths = 0;                          ///< used
+};
+
+/// Finds the optics of a depth sensor: the lens of its infrared camera as `calibrate_lens` does,
+/// then scale and offset of its depths, and the infrared picture's shift. The last three are the
+/// least squares of reported inverse depths less those of the boards that were found, with priors:
+/// 0 +- 0.01 1/m of the offset, `infrared_shift` +- 1 pixel. A tilted board's depth changes from
+/// pixel to pixel, and so shows the shift.
+///
+/// It is refused as `calibrate_lens` refuses a lens, and if fewer than 5 views have depths, or if
+/// the scale is more than 10 % off.
+///
+/// @param side  metres, of the board's squares
+DepthOpticsReport calibrate_depth_optics(std::span<const DepthBoardView> views, int width,
+                                         int height, double side);
 
 }  // namespace octurn

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lens/board_edges.hpp"
+#include "octurn/lens.hpp"
 
 namespace octurn {
 
@@ -20,5 +21,10 @@ struct LatticePlace {
 /// @param corners  pixels
 std::vector<LatticePlace> grow_lattice(std::span<const Eigen::Vector2d> corners,
                                        std::span<const CornerEdges> edges);
+
+inline constexpr std::size_t min_board_corners = 20;  ///< fewer are no board
+
+/// Finds the corners of a chessboard in a smoothed image, and grows their lattice.
+BoardView find_lattice(const GreyImage& image);
 
 }  // namespace octurn

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -19,7 +18,6 @@ constexpr std::size_t min_view_corners = 12;  // of a view: three by four
 constexpr double min_tilt_deg = 20;           // between two boards
 constexpr double max_focal_sigma = 0.003;     // of the focal length
 constexpr double min_coverage = 0.85;
-constexpr double max_rms = 0.6;  // pixels, at the usual width
 
 std::string number(double value, int digits) {
   std::ostringstream text;
@@ -65,7 +63,8 @@ double covered_share(const LensCoverage& coverage) {
 }
 
 /// Returns why a lens is refused; empty if it is accepted.
-std::string find_fault(const LensReport& report) {
+/// @param max_rms  pixels, at the usual width
+std::string find_fault(const LensReport& report, double max_rms) {
   const double focal_sigma = std::max(report.sigma.intrinsics.fx / report.lens.intrinsics.fx,
                                       report.sigma.intrinsics.fy / report.lens.intrinsics.fy);
   const double tilt_deg = degrees_from_radians(report.tilt);
@@ -100,12 +99,6 @@ bool is_usable(const BoardView& view) {
   return right.column - left.column >= 2 && bottom.row - top.row >= 2;
 }
 
-std::vector<BoardView> usable(std::span<const BoardView> views) {
-  std::vector<BoardView> some;
-  std::ranges::copy_if(views, std::back_inserter(some), is_usable);
-  return some;
-}
-
 }  // namespace
 
 void add_view(LensCoverage& coverage, const BoardView& view, int width, int height) {
@@ -119,28 +112,35 @@ void add_view(LensCoverage& coverage, const BoardView& view, int width, int heig
   }
 }
 
-LensReport calibrate_lens(std::span<const BoardView> views, int width, int height) {
-  std::vector<BoardView> used = usable(views);
-  LensReport report{.views = static_cast<int>(used.size())};
-  for (const BoardView& view : used) {
-    add_view(report.coverage, view, width, height);
+LensReport calibrate_lens(std::span<const BoardView> views, int width, int height,
+                          const LensRules& rules) {
+  std::vector<BoardView> used;
+  LensReport report;
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (is_usable(views[i])) {
+      used.push_back(views[i]);
+      report.boards.push_back({.view = i});
+      add_view(report.coverage, views[i], width, height);
+    }
   }
+  report.views = static_cast<int>(used.size());
   if (used.size() < min_views) {
     report.reason = "a board was seen in " + std::to_string(used.size()) + " pictures: at least " +
                     std::to_string(min_views) + " have to show it";
     return report;
   }
-  LensFit fit = fit_lens(used, first_lens(used, width, height));
+  LensFit fit = fit_lens(used, first_lens(used, width, height), rules.shape);
   drop_outliers(used, fit.found);
-  fit = fit_lens(used, fit.found);
-  for (const BoardView& view : used) {
-    report.corners += static_cast<int>(view.size());
+  fit = fit_lens(used, fit.found, rules.shape);
+  for (std::size_t i = 0; i < used.size(); ++i) {
+    report.corners += static_cast<int>(used[i].size());
+    report.boards[i].camera_from_board = fit.found.camera_from_board[i];
   }
   report.lens = to_lens(fit.found.lens, width, height);
   report.sigma = to_lens(fit.sigma, width, height);
   report.rms = fit.rms;
   report.tilt = largest_tilt(fit.found.camera_from_board);
-  report.reason = find_fault(report);
+  report.reason = find_fault(report, rules.max_rms);
   report.accepted = report.reason.empty();
   return report;
 }

@@ -13,7 +13,6 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr std::size_t min_board_corners = 20;
 constexpr int first_reach = 4;  // pixels around a corner, before its squares' size is known
 constexpr int least_reach = 3;
 constexpr int most_reach = 12;
@@ -31,12 +30,11 @@ std::vector<Vector2d> find_corners(const GreyImage& image) {
   return corners;
 }
 
-double nearest_distance(const std::vector<Vector2d>& corners,
-                        const std::vector<LatticePlace>& places, std::size_t of) {
+double nearest_distance(const BoardView& view, std::size_t of) {
   double least = 1e9;
-  for (const LatticePlace& place : places) {
-    if (place.corner != of) {
-      least = std::min(least, (corners[place.corner] - corners[of]).norm());
+  for (std::size_t i = 0; i < view.size(); ++i) {
+    if (i != of) {
+      least = std::min(least, (view[i].pixel - view[of].pixel).norm());
     }
   }
   return least;
@@ -44,23 +42,32 @@ double nearest_distance(const std::vector<Vector2d>& corners,
 
 }  // namespace
 
+BoardView find_lattice(const GreyImage& image) {
+  const std::vector<Vector2d> corners = find_corners(image);
+  BoardView view;
+  for (const LatticePlace& place : grow_lattice(corners, find_edges(image, corners))) {
+    view.push_back(
+        {.pixel = corners[place.corner], .column = place.square.x(), .row = place.square.y()});
+  }
+  return view;
+}
+
 BoardView find_board(const Picture& picture) {
   const int side = std::max(1, picture.width / usual_width);
   const GreyImage image = smoothed(reduced(picture, side));
-  const std::vector<Vector2d> corners = find_corners(image);
-  const std::vector<LatticePlace> places = grow_lattice(corners, find_edges(image, corners));
-  if (places.size() < min_board_corners) {
+  const BoardView lattice = find_lattice(image);
+  if (lattice.size() < min_board_corners) {
     return {};
   }
   const GreyImage whole = side == 1 ? image : smoothed(reduced(picture, 1));
   BoardView view;
-  for (const LatticePlace& place : places) {
-    const double distance = side * nearest_distance(corners, places, place.corner);
+  for (std::size_t i = 0; i < lattice.size(); ++i) {
+    const double distance = side * nearest_distance(lattice, i);
     const int reach = std::clamp(static_cast<int>(reach_share * distance), least_reach, most_reach);
-    // A block's centre lies (side - 1) / 2 pixels from the centre of its first pixel.
-    Vector2d pixel = corners[place.corner] * side + Vector2d::Constant((side - 1) / 2.0);
-    if (refine_corner(whole, reach, pixel)) {
-      view.push_back({.pixel = pixel, .column = place.square.x(), .row = place.square.y()});
+    BoardCorner corner = lattice[i];
+    corner.pixel = to_whole(corner.pixel, side);
+    if (refine_corner(whole, reach, corner.pixel)) {
+      view.push_back(corner);
     }
   }
   return view.size() < min_board_corners ? BoardView{} : view;

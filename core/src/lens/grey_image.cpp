@@ -42,25 +42,32 @@ GreyImage smoothed(const GreyImage& image) {
   return both;
 }
 
-GreyImage reduced(const Picture& picture, int side) {
-  GreyImage image{.width = picture.width / side, .height = picture.height / side};
-  image.levels.reserve(static_cast<std::size_t>(image.width) *
-                       static_cast<std::size_t>(image.height));
-  for (int v = 0; v < image.height; ++v) {
-    for (int u = 0; u < image.width; ++u) {
-      int sum = 0;
+GreyImage reduced(const GreyImage& image, int side) {
+  if (side == 1) {
+    return image;
+  }
+  GreyImage small{.width = image.width / side, .height = image.height / side};
+  small.levels.reserve(static_cast<std::size_t>(small.width) *
+                       static_cast<std::size_t>(small.height));
+  for (int v = 0; v < small.height; ++v) {
+    for (int u = 0; u < small.width; ++u) {
+      float sum = 0;
       for (int row = v * side; row < (v + 1) * side; ++row) {
-        const std::size_t first =
-            static_cast<std::size_t>(row) * static_cast<std::size_t>(picture.width) +
-            static_cast<std::size_t>(u) * static_cast<std::size_t>(side);
-        for (std::size_t i = 0; i < static_cast<std::size_t>(side); ++i) {
-          sum += picture.samples[first + i];
+        for (int column = u * side; column < (u + 1) * side; ++column) {
+          sum += image.at(column, row);
         }
       }
-      image.levels.push_back(static_cast<float>(sum) / static_cast<float>(side * side));
+      small.levels.push_back(sum / static_cast<float>(side * side));
     }
   }
-  return image;
+  return small;
+}
+
+GreyImage reduced(const Picture& picture, int side) {
+  return reduced({.width = picture.width,
+                  .height = picture.height,
+                  .levels = std::vector<float>(picture.samples.begin(), picture.samples.end())},
+                 side);
 }
 
 }  // namespace octurn

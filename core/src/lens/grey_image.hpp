@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <vector>
 
@@ -36,5 +37,12 @@ GreyImage smoothed(const GreyImage& image);
 /// Reduces a picture to the means of blocks of side x side pixels. Incomplete blocks at the right
 /// and the bottom are dropped.
 GreyImage reduced(const Picture& picture, int side);
+GreyImage reduced(const GreyImage& image, int side);
+
+/// The place in a picture of a pixel of the reduced one: a block's centre lies (side - 1) / 2
+/// pixels from the centre of its first pixel.
+inline Eigen::Vector2d to_whole(const Eigen::Vector2d& pixel, int side) {
+  return pixel * side + Eigen::Vector2d::Constant((side - 1) / 2.0);
+}
 
 }  // namespace octurn

@@ -19,6 +19,9 @@ constexpr double small_gain = 1e-10;  // of the sum of squares
 constexpr double first_damping = 1e-3;
 constexpr double most_damping = 1e8;
 
+/// The weight of fx - fy, which is 0 to a thousandth of a pixel where pixels are square.
+double weight_of(PixelShape shape) { return shape == PixelShape::square ? 1e6 : 0; }
+
 /// The normal equations of one view.
 struct ViewEquations {
   Matrix6d lens = Matrix6d::Zero();
@@ -30,11 +33,14 @@ struct ViewEquations {
 
 struct Equations {
   std::vector<ViewEquations> views = {};
+  Matrix6d shape = Matrix6d::Zero();  // of the pixels
+  Vector6d shape_right = Vector6d::Zero();
   double squares = 0;  // of the residuals, pixels
 };
 
-double sum_of_squares(const std::vector<BoardView>& views, const LensAndBoards& at) {
-  double squares = 0;
+double sum_of_squares(const std::vector<BoardView>& views, const LensAndBoards& at,
+                      PixelShape shape) {
+  double squares = weight_of(shape) * std::pow(at.lens[0] - at.lens[1], 2);
   for (std::size_t i = 0; i < views.size(); ++i) {
     for (const BoardCorner& corner : views[i]) {
       squares += (see(at.lens, at.camera_from_board[i], corner).pixel - corner.pixel).squaredNorm();
@@ -43,8 +49,15 @@ double sum_of_squares(const std::vector<BoardView>& views, const LensAndBoards& 
   return squares;
 }
 
-Equations equations_at(const std::vector<BoardView>& views, const LensAndBoards& at) {
-  Equations all;
+Equations equations_at(const std::vector<BoardView>& views, const LensAndBoards& at,
+                       PixelShape shape) {
+  Vector6d unequal = Vector6d::Zero();
+  unequal.head<2>() = Vector2d(1, -1);
+  const double weight = weight_of(shape);
+  const double off_square = at.lens[0] - at.lens[1];
+  Equations all{.shape = weight * unequal * unequal.transpose(),
+                .shape_right = -weight * off_square * unequal,
+                .squares = weight * off_square * off_square};
   for (std::size_t i = 0; i < views.size(); ++i) {
     ViewEquations view;
     for (const BoardCorner& corner : views[i]) {
@@ -69,8 +82,8 @@ Matrix6d damped(Matrix6d matrix, double damping) {
 
 /// The lens's equations after elimination of the boards (Schur complement).
 std::pair<Matrix6d, Vector6d> without_boards(const Equations& equations, double damping) {
-  Matrix6d matrix = Matrix6d::Zero();
-  Vector6d right = Vector6d::Zero();
+  Matrix6d matrix = equations.shape;
+  Vector6d right = equations.shape_right;
   for (const ViewEquations& view : equations.views) {
     const Eigen::LDLT<Matrix6d> board(damped(view.board, damping));
     matrix += damped(view.lens, damping) - view.both * board.solve(view.both.transpose());
@@ -117,20 +130,20 @@ std::size_t count_corners(const std::vector<BoardView>& views) {
 
 }  // namespace
 
-LensFit fit_lens(const std::vector<BoardView>& views, LensAndBoards first) {
+LensFit fit_lens(const std::vector<BoardView>& views, LensAndBoards first, PixelShape shape) {
   LensFit fit{.found = std::move(first)};
-  Equations equations = equations_at(views, fit.found);
+  Equations equations = equations_at(views, fit.found, shape);
   double damping = first_damping;
   for (int step = 0; step < max_steps && damping < most_damping; ++step) {
     LensAndBoards next = stepped(fit.found, equations, damping);
-    const double squares = is_sound(next) ? sum_of_squares(views, next) : equations.squares;
+    const double squares = is_sound(next) ? sum_of_squares(views, next, shape) : equations.squares;
     if (!(squares < equations.squares)) {
       damping *= 10;
       continue;
     }
     const bool is_done = equations.squares - squares < small_gain * equations.squares;
     fit.found = std::move(next);
-    equations = equations_at(views, fit.found);
+    equations = equations_at(views, fit.found, shape);
     damping /= 10;
     if (is_done) {
       break;

@@ -15,7 +15,7 @@ struct LensFit {
 
 /// Minimises the squared reprojection errors by Levenberg-Marquardt. The boards' poses are
 /// eliminated from each step's equations by the Schur complement.
-LensFit fit_lens(const std::vector<BoardView>& views, LensAndBoards first);
+LensFit fit_lens(const std::vector<BoardView>& views, LensAndBoards first, PixelShape shape);
 
 /// Removes corners whose reprojection error exceeds five times the median, and half a pixel.
 void drop_outliers(std::vector<BoardView>& views, const LensAndBoards& found);

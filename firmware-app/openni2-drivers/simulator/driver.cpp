@@ -43,7 +43,8 @@ class Device final : public DepthDevice {
   OniBool isPropertySupported(int property) override {
     return property == ONI_DEVICE_PROPERTY_ERROR_STATE || property == platform_angle_property ||
                    property == wall_property || property == object_pose_property ||
-                   property == sensor_time_property || property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER
+                   property == board_property || property == sensor_time_property ||
+                   property == ONI_DEVICE_PROPERTY_SERIAL_NUMBER
                ? TRUE
                : FALSE;
   }
@@ -68,20 +69,23 @@ class Device final : public DepthDevice {
 
   OniStatus setProperty(int property, const void* data, int size) override {
     if (property != platform_angle_property && property != wall_property &&
-        property != object_pose_property) {
+        property != object_pose_property && property != board_property) {
       return ONI_STATUS_NOT_SUPPORTED;
     }
     double value = 0;
     const OniStatus status = take_property(value, data, size);
     if (status != ONI_STATUS_OK || !std::isfinite(value) ||
         (property == wall_property && value < 0) ||
-        (property == object_pose_property && !(value >= 0 && value <= max_object_pose))) {
+        (property == object_pose_property && !(value >= 0 && value <= max_object_pose)) ||
+        (property == board_property && !(value >= 0 && value <= max_board_hold))) {
       return ONI_STATUS_BAD_PARAMETER;
     }
     if (property == platform_angle_property) {
       state_.angle = value;
     } else if (property == object_pose_property) {
       state_.object_pose = static_cast<int>(value);
+    } else if (property == board_property) {
+      state_.board = static_cast<int>(value);
     } else if (!simulation_.wall) {
       state_.wall = value;
     }
@@ -92,6 +96,12 @@ class Device final : public DepthDevice {
   std::unique_ptr<DepthStream> create_depth_stream() override {
     return std::make_unique<SimulatorStream>(simulation_, kinect_, state_);
   }
+
+  std::unique_ptr<InfraredStream> create_infrared_stream() override {
+    return std::make_unique<SimulatorInfraredStream>(simulation_, kinect_, state_);
+  }
+
+  bool has_infrared_stream() const override { return true; }
 
   Simulation simulation_;
   SimulatedKinect kinect_;

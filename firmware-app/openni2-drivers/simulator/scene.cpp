@@ -4,6 +4,8 @@
 #include <utility>
 
 #include "simulator/camera.hpp"
+#include "simulator/infrared_board.hpp"
+#include "simulator/printed_board.hpp"
 #include "simulator/surroundings.hpp"
 
 namespace octurn {
@@ -45,6 +47,20 @@ Scene Scene::of_wall(double distance, const SensorOptics& optics) {
   Mesh wall;
   add_rectangle(wall, {-2 * z, -2 * z, z}, {4 * z, 0, 0}, {0, 4 * z, 0});
   return {{}, wall, Eigen::Isometry3d::Identity(), optics};
+}
+
+Scene Scene::of_board(int hold, const SensorOptics& optics) {
+  constexpr float wall = 1.8F;  // metres
+  const Eigen::Isometry3d pose = infrared_hold(hold, optics);
+  const auto place = [&](double column, double row) {
+    return Eigen::Vector3f((board_square * (pose * Eigen::Vector3d(column, row, 0))).cast<float>());
+  };
+  const Eigen::Vector3f corner = place(-board_margin, -board_margin);
+  Mesh around;
+  add_rectangle(around, corner, place(board_columns + board_margin, -board_margin) - corner,
+                place(-board_margin, board_rows + board_margin) - corner);
+  add_rectangle(around, {-2 * wall, -2 * wall, wall}, {4 * wall, 0, 0}, {0, 4 * wall, 0});
+  return {{}, around, Eigen::Isometry3d::Identity(), optics};
 }
 
 Scene::Scene(Mesh object, const Mesh& around, const Eigen::Isometry3d& platform_from_sensor,

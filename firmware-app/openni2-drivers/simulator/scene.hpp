@@ -26,6 +26,10 @@ class Scene {
   /// Makes a scene of a wall only. @param distance  metres; the sensor looks squarely at the wall
   static Scene of_wall(double distance, const SensorOptics& optics = {});
 
+  /// Makes a scene of a printed board before a wall.
+  /// @param hold  as of `infrared_hold`
+  static Scene of_board(int hold, const SensorOptics& optics);
+
   /// Turns the object over. @param pose  as of `platform_from_object`
   /// @return false if it has this pose already
   bool set_object_pose(int pose) { return object_.set_pose(pose); }

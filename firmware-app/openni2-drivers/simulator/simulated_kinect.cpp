@@ -90,6 +90,20 @@ void SimulatedKinect::turn_to_wall(double distance) {
   }
 }
 
+void SimulatedKinect::show_board(int hold) {
+  if (hold != board_) {
+    board_ = hold;
+    look_again();
+  }
+}
+
+void SimulatedKinect::expose_infrared(std::uint32_t frame, std::span<std::uint8_t> picture) {
+  if (!infrared_) {
+    infrared_.emplace(scene_.optics(), seed_);
+  }
+  infrared_->expose(board_, frame, picture);
+}
+
 void SimulatedKinect::set_object_pose(int pose) {
   if (scene_.set_object_pose(pose)) {
     look_again();
@@ -97,8 +111,10 @@ void SimulatedKinect::set_object_pose(int pose) {
 }
 
 void SimulatedKinect::look_again() {
-  const InverseDepth before = std::exchange(
-      lit_, wall_ > 0 ? Scene::of_wall(wall_, scene_.optics()).lit_at(0) : scene_.lit_at(angle_));
+  const InverseDepth before =
+      std::exchange(lit_, board_ > 0  ? Scene::of_board(board_, scene_.optics()).lit_at(0)
+                          : wall_ > 0 ? Scene::of_wall(wall_, scene_.optics()).lit_at(0)
+                                      : scene_.lit_at(angle_));
   update_pixels(changed_from(before));
 }
 

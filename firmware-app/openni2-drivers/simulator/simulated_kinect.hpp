@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
+#include "simulator/infrared_board.hpp"
 #include "simulator/noise_field.hpp"
 #include "simulator/scene.hpp"
 #include "simulator/sensor_pattern.hpp"
@@ -42,6 +44,9 @@ class SimulatedKinect {
   /// Turns the sensor to a wall, and away from its scene. @param distance  metres; 0: back again
   void turn_to_wall(double distance);
 
+  /// Shows a printed board before the sensor. @param hold  as of `infrared_hold`; 0: puts it away
+  void show_board(int hold);
+
   /// Turns the object over. @param pose  as of `platform_from_object`
   void set_object_pose(int pose);
 
@@ -49,6 +54,9 @@ class SimulatedKinect {
   /// @param angle  of the platform, radians
   /// @param frame  index of the frame, which determines its noise
   void expose(double angle, std::uint32_t frame, std::span<std::uint16_t> depth);
+
+  /// Takes one infrared picture: 640 x 480 grey levels. Without a board it shows an empty room.
+  void expose_infrared(std::uint32_t frame, std::span<std::uint8_t> picture);
 
  private:
   /// A pixel's reading and its noise while the platform stands still.
@@ -78,7 +86,9 @@ class SimulatedKinect {
   SensorPattern pattern_;
   std::vector<std::uint16_t> depth_table_;  // depth of each reading
   double angle_ = 0;
-  double wall_ = 0;  // metres; 0: it looks at its scene
+  double wall_ = 0;                             // metres; 0: it looks at its scene
+  int board_ = 0;                               // number of the hold; 0: there is no board
+  std::optional<InfraredBoard> infrared_ = {};  // once a picture is taken
   InverseDepth lit_;
   std::vector<Pixel> pixels_;
 };

@@ -56,12 +56,37 @@ bool SimulatorStream::is_silent() const {
 void SimulatorStream::deliver_frame() {
   const auto time = steady_clock::now();
   const double angle = device_.angle;
+  const std::lock_guard lock(device_.exposing);
   kinect_.turn_to_wall(device_.wall);
+  kinect_.show_board(device_.board);
   kinect_.set_object_pose(device_.object_pose);
   ++frames_;
   deliver(frames_, time, [&](std::span<OniDepthPixel> depth) {
     kinect_.expose(angle, static_cast<std::uint32_t>(frames_), depth);
   });
+}
+
+OniStatus SimulatorInfraredStream::start() {
+  if (!thread_.joinable()) {
+    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
+  }
+  return ONI_STATUS_OK;
+}
+
+void SimulatorInfraredStream::run(const std::stop_token& stop) {
+  const auto period = frame_period(simulation_);
+  auto due = steady_clock::now() + period;
+  while (sleep_until(stop, due) && !device_.is_lost) {
+    const auto time = steady_clock::now();
+    const std::lock_guard lock(device_.exposing);
+    kinect_.show_board(device_.board);
+    ++pictures_;
+    deliver(pictures_, time, [&](std::span<std::uint8_t> picture) {
+      kinect_.expose_infrared(static_cast<std::uint32_t>(pictures_), picture);
+    });
+    ++device_.periods;
+    due = std::max(due + period, steady_clock::now());
+  }
 }
 
 }  // namespace octurn

@@ -8,6 +8,7 @@
 
 #include "simulator/lens_distortion.hpp"
 #include "simulator/noise_field.hpp"
+#include "simulator/printed_board.hpp"
 
 namespace octurn {
 namespace {
@@ -15,17 +16,8 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double square = 0.015;  // metres
-constexpr int columns = 17;
-constexpr int rows = 12;
-constexpr double margin = 0.6;  // width of the white border, squares
-
-// Grey levels.
-constexpr double black = 28;
-constexpr double white = 205;
-constexpr double background = 92;
-constexpr double fall_off = 0.35;  // of the light, from the right to the left
-constexpr float noise_level = 1.2F;
+constexpr double fall_off = 0.35;    // of the light, from the right to the left
+constexpr float noise_level = 1.2F;  // grey levels
 
 constexpr int still_pictures = 5;
 constexpr int moving_pictures = 2;
@@ -82,37 +74,12 @@ Eigen::Isometry3d camera_from_board(const LaserSimulation& simulation, const Hol
   const Vector2d middle =
       ray_at(simulation, hold.across * (lens.width - 1), hold.down * (lens.height - 1));
   Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(hold.distance / square * middle.homogeneous());
+  pose.translate(hold.distance / board_square * middle.homogeneous());
   pose.rotate(Eigen::AngleAxisd(hold.about_x, Vector3d::UnitX()));
   pose.rotate(Eigen::AngleAxisd(hold.about_y, Vector3d::UnitY()));
   pose.rotate(Eigen::AngleAxisd(hold.about_z, Vector3d::UnitZ()));
-  pose.translate(Vector3d(-columns / 2.0, -rows / 2.0, 0));
+  pose.translate(Vector3d(-board_columns / 2.0, -board_rows / 2.0, 0));
   return pose;
-}
-
-Vector2d intersect_board(const Eigen::Isometry3d& board_from_camera, const Vector2d& ray) {
-  const Vector3d from = board_from_camera.translation();
-  const Vector3d way = board_from_camera.linear() * ray.homogeneous();
-  return (from - way * (from.z() / way.z())).head<2>();
-}
-
-/// 1 inside of the even squares, -1 inside of the odd ones, interpolated at their border.
-/// @param width  of the border, squares
-double parity(double place, double width) {
-  const double border = std::round(place);
-  const double side = std::clamp(2 * (place - border) / width, -1.0, 1.0);
-  return std::fmod(std::abs(border), 2) < 0.5 ? side : -side;
-}
-
-double light_at(const Vector2d& met, const Vector2d& width) {
-  const bool is_paper = met.x() > -margin && met.y() > -margin && met.x() < columns + margin &&
-                        met.y() < rows + margin;
-  const bool is_board = met.x() > 0 && met.y() > 0 && met.x() < columns && met.y() < rows;
-  if (!is_board) {
-    return is_paper ? white : background;
-  }
-  const double dark = (1 + parity(met.x(), width.x()) * parity(met.y(), width.y())) / 2;
-  return white + dark * (black - white);
 }
 
 }  // namespace
@@ -149,7 +116,7 @@ Picture WavedBoard::picture(int number) const {
       const auto grain =
           static_cast<double>(noise_level * noise_.at(sequence, static_cast<std::size_t>(u)));
       picture.samples.push_back(static_cast<std::uint8_t>(
-          std::clamp(std::lround(shade * light_at(met, width) + grain), 0L, 255L)));
+          std::clamp(std::lround(shade * board_light(met, width) + grain), 0L, 255L)));
     }
   }
   return picture;

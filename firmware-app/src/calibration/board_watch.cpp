@@ -17,7 +17,6 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using nlohmann::json;
 
-constexpr int wanted_views = 12;
 constexpr int most_views = 40;
 constexpr int still_comparisons = 2;    // consecutive pictures that match their predecessor
 constexpr double still_share = 0.0025;  // of the width: 2 pixels of 820 between pictures
@@ -45,10 +44,28 @@ double median_move(const BoardView& view, const BoardView& other) {
 
 }  // namespace
 
-BoardWatch::BoardWatch(const Intrinsics& lens) : lens_(lens) { look_.wanted = wanted_views; }
+BoardWatch::BoardWatch(const Intrinsics& lens, FindBoard find, int wanted)
+    : lens_(lens), find_(find) {
+  look_.wanted = wanted;
+}
 
-bool BoardWatch::is_still(const BoardView& view) const {
-  return !last_.empty() && median_move(view, last_) < still_share * lens_.width;
+bool BoardWatch::is_same(const BoardView& view, const BoardView& other) const {
+  return !view.empty() && !other.empty() && median_move(view, other) < still_share * lens_.width;
+}
+
+bool BoardWatch::shows_last_view(const Picture& picture) const {
+  return is_same(find_(picture), views_.back());
+}
+
+void BoardWatch::drop_last_view() {
+  views_.pop_back();
+  holds_.pop_back();
+  look_.coverage = {};
+  for (const BoardView& view : views_) {
+    add_view(look_.coverage, view, lens_.width, lens_.height);
+  }
+  look_.taken = static_cast<int>(views_.size());
+  look_.advice = BoardAdvice::hold_still;
 }
 
 bool BoardWatch::is_new(const Hold& hold) const {
@@ -79,7 +96,7 @@ bool BoardWatch::is_covered() const {
 }
 
 bool BoardWatch::is_complete() const {
-  return look_.taken >= most_views || (look_.taken >= wanted_views && is_tilted() && is_covered());
+  return look_.taken >= most_views || (look_.taken >= look_.wanted && is_tilted() && is_covered());
 }
 
 BoardAdvice BoardWatch::what_is_missing() const {
@@ -90,13 +107,13 @@ BoardAdvice BoardWatch::what_is_missing() const {
 }
 
 bool BoardWatch::see(const Picture& picture) {
-  BoardView view = find_board(picture);
+  BoardView view = find_(picture);
   look_.corners.clear();
   for (const BoardCorner& corner : view) {
     look_.corners.emplace_back((corner.pixel.x() + 0.5) / lens_.width,
                                (corner.pixel.y() + 0.5) / lens_.height);
   }
-  still_pictures_ = !view.empty() && is_still(view) ? still_pictures_ + 1 : 0;
+  still_pictures_ = is_same(view, last_) ? still_pictures_ + 1 : 0;
   last_ = view;
   if (view.empty() || still_pictures_ < still_comparisons) {
     look_.advice = view.empty() ? BoardAdvice::show : BoardAdvice::hold_still;

@@ -34,12 +34,22 @@ nlohmann::json to_json(const BoardLook& look);
 /// board stands still in a new place, or covers new cells of the picture.
 class BoardWatch {
  public:
-  /// @param lens  estimate of the camera's intrinsics, used to compute the boards' tilt
-  explicit BoardWatch(const Intrinsics& lens);
+  using FindBoard = BoardView (*)(const Picture& picture);
+
+  /// @param lens    estimate of the camera's intrinsics, used to compute the boards' tilt
+  /// @param find    finds a board in a picture
+  /// @param wanted  minimum number of views
+  explicit BoardWatch(const Intrinsics& lens, FindBoard find = find_board, int wanted = 12);
 
   /// Processes the next picture, whose size must be that of the lens.
   /// @return whether its view was taken
   bool see(const Picture& picture);
+
+  /// Whether a picture shows the board where the view that was taken last shows it.
+  bool shows_last_view(const Picture& picture) const;
+
+  /// Drops the view that was taken last: the board moved meanwhile.
+  void drop_last_view();
 
   const BoardLook& look() const { return look_; }
   const std::vector<BoardView>& views() const { return views_; }
@@ -56,7 +66,7 @@ class BoardWatch {
     double size = 0;  // pixels: mean side of the squares
   };
 
-  bool is_still(const BoardView& view) const;
+  bool is_same(const BoardView& view, const BoardView& other) const;
   bool is_new(const Hold& hold) const;
   bool adds_cells(const BoardView& view) const;
   bool is_tilted() const;
@@ -64,6 +74,7 @@ class BoardWatch {
   BoardAdvice what_is_missing() const;
 
   Intrinsics lens_;
+  FindBoard find_;
   BoardLook look_ = {};
   BoardView last_ = {};
   int still_pictures_ = 0;

@@ -27,6 +27,7 @@ struct KeptLens {
 struct SolvedLens {
   std::string camera = {};  ///< serial number
   LensReport report = {};
+  std::optional<SolvedOptics> optics = {};  ///< of a depth sensor; nullopt: a camera
 };
 
 /// Returns the path of a camera's file. Characters of the serial number other than letters, digits,

@@ -22,8 +22,8 @@ constexpr std::size_t max_optics_bytes = std::size_t{1} << 18U;  // 30 times the
 
 using OpticsName = std::pair<OpticsOrigin, std::string_view>;
 
-constexpr std::array<OpticsName, 2> optics_names{
-    {{OpticsOrigin::turn, "turn"}, {OpticsOrigin::scan, "scan"}}};
+constexpr std::array<OpticsName, 3> optics_names{
+    {{OpticsOrigin::turn, "turn"}, {OpticsOrigin::scan, "scan"}, {OpticsOrigin::board, "board"}}};
 
 OpticsRecord to_optics_record(const JsonValue& object) {
   JsonObject keys(object);

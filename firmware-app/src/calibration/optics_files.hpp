@@ -13,8 +13,9 @@ namespace octurn {
 
 /// Origin of a depth sensor's optics.
 enum class OpticsOrigin {
-  turn,  ///< solved from a calibration turn
-  scan,  ///< solved from a scan
+  turn,   ///< solved from a calibration turn
+  scan,   ///< solved from a scan
+  board,  ///< solved from views of a printed board, the scale of the depths as well
 };
 
 /// Optics of a depth sensor that are in force, or were.

@@ -10,6 +10,7 @@
 #include "capture/plan.hpp"
 #include "capture/scan_of_rig.hpp"
 #include "capture/take_depth_image.hpp"
+#include "octurn/optics_json.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 #include "sensor/pixel_ray.hpp"
@@ -74,10 +75,16 @@ json to_json(const TurnReport& report) {
   return object;
 }
 
+json lens_report_json(const CalibrationRun& run) {
+  json report = to_json(*run.lens);
+  report["optics"] = run.optics ? to_json(*run.optics) : json();
+  return report;
+}
+
 json report_json(const CalibrationRun& run) {
   return run.report ? to_json(*run.report)
          : run.wall ? to_json(*run.wall)
-         : run.lens ? to_json(*run.lens)
+         : run.lens ? lens_report_json(run)
                     : json();
 }
 

@@ -51,6 +51,7 @@ struct CalibrationRun {
   std::optional<SensorMapReport> wall = {};  ///< of a wall; without the map's pixels
   std::optional<BoardLook> look = {};        ///< of a lens, while views are taken
   std::optional<LensReport> lens = {};       ///< of a lens
+  std::optional<SolvedOptics> optics = {};   ///< of a depth sensor's lens, if it is accepted
   std::string camera = {};                   ///< of a lens: the camera's serial number
   std::optional<Failure> failure = {};
 };

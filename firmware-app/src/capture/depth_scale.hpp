@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+#include <optional>
+
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 
@@ -19,10 +22,15 @@ inline SolvedOptics scaled(SolvedOptics optics, double depth_scale) {
 }
 
 /// Returns the relative sigma of a scan's depths. A factor other than 1 comes from a length that
-/// was measured with calipers, and on a model: each to 0.1 mm, of 100 mm.
-inline double scale_sigma(double depth_scale) {
+/// was measured with calipers, and on a model: each to 0.1 mm, of 100 mm. Known optics have a sigma
+/// of their own, which is smaller if a board gave them.
+inline double scale_sigma(double depth_scale, const std::optional<SolvedOptics>& optics) {
   constexpr double of_a_known_length = 0.0015;
-  return depth_scale == 1 ? unknown_scale_sigma : of_a_known_length;
+  if (depth_scale != 1) {
+    return of_a_known_length;
+  }
+  const double known = optics ? optics->sigma.depth_scale : 0;
+  return known > 0 ? std::min(known, unknown_scale_sigma) : unknown_scale_sigma;
 }
 
 }  // namespace octurn

@@ -46,7 +46,7 @@ Scan scan_of_sensor(Rig& rig, const ScanSettings& settings) {
           .sensor_serial = rig.sensor().serial(),
           .intrinsics = to_intrinsics(rig.sensor(), rig.optics().has_value(), settings),
           .optics = rig.optics(),
-          .scale_sigma = scale_sigma(settings.depth_scale),
+          .scale_sigma = scale_sigma(settings.depth_scale, rig.optics()),
           .platform_from_sensor = settings.platform_from_sensor,
           .clip = settings.clip};
 }

@@ -13,11 +13,11 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-constexpr int smooth_radius = 4;         // pixels
-constexpr double max_step = 0.008;       // metres
-constexpr int pixel_step = 2;            // in both directions: thousands of points are enough
-constexpr std::size_t min_points = 150;  // those of an object of 2 cm at 0.7 m
-constexpr double half_fit = 0.005;       // metres: three depth steps of a Kinect at 0.7 m
+constexpr int smooth_radius = 4;            // pixels
+constexpr double max_surface_step = 0.008;  // metres
+constexpr int point_step = 2;               // in both directions: thousands of points are enough
+constexpr std::size_t min_points = 150;     // those of an object of 2 cm at 0.7 m
+constexpr double half_fit = 0.005;          // metres: three depth steps of a Kinect at 0.7 m
 // Excludes the platform, which looks the same at every angle, with its noise and a pose that is
 // some degrees off.
 constexpr double min_height = 0.02;  // metres
@@ -67,7 +67,7 @@ Eigen::Vector3d point_at(const PlatformLook& view, const DepthFrame& frame, int 
 /// would bias the rotation towards 0. Each reading inside the clip box becomes the mean of those
 /// around it on the same surface.
 DepthFrame smoothed(const PlatformLook& view, const DepthFrame& frame) {
-  const auto same_surface = static_cast<int>(max_step / view.intrinsics.depth_unit);
+  const auto same_surface = static_cast<int>(max_surface_step / view.intrinsics.depth_unit);
   DepthFrame smooth = frame;
   for (int v = 0; v < frame.height; ++v) {
     for (int u = 0; u < frame.width; ++u) {
@@ -84,8 +84,8 @@ DepthFrame smoothed(const PlatformLook& view, const DepthFrame& frame) {
 /// Points inside the clip box and above the platform, in the platform frame.
 Points points_in(const PlatformLook& view, const DepthFrame& frame) {
   Points points;
-  for (int v = 0; v < frame.height; v += pixel_step) {
-    for (int u = 0; u < frame.width; u += pixel_step) {
+  for (int v = 0; v < frame.height; v += point_step) {
+    for (int u = 0; u < frame.width; u += point_step) {
       const Eigen::Vector3d point = point_at(view, frame, u, v);
       if (point.z() >= min_height && contains(view.clip, point)) {
         points.push_back(point);

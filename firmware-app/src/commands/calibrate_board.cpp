@@ -13,9 +13,12 @@
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/lens.hpp"
+#include "octurn/optics_json.hpp"
 #include "octurn/png.hpp"
+#include "octurn/units.hpp"
 #include "progress_bar.hpp"
 #include "run/scanner.hpp"
+#include "sensor/depth_sensor.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
 #include "store/data_folder.hpp"
@@ -48,8 +51,36 @@ std::string to_text(const LensReport& report) {
   return text.str();
 }
 
-void write_lens_report(const LensReport& report, const CalibrateBoardArguments& arguments) {
-  write_standard_output(arguments.json ? to_json(report).dump() + "\n" : to_text(report));
+/// The optics of a depth sensor as lines for people.
+std::string to_text(const SolvedOptics& optics) {
+  const SensorOptics& found = optics.value;
+  const SensorOptics& sigma = optics.sigma;
+  std::ostringstream text;
+  text.setf(std::ios::fixed);
+  text.precision(2);
+  text << "Of the depth image: focal length " << found.fx << " +- " << sigma.fx
+       << " pixels, middle at " << found.cx << " +- " << sigma.cx << ", " << found.cy << " +- "
+       << sigma.cy << ".\n";
+  text.precision(4);
+  text << "Depths are " << found.depth_scale << " +- " << sigma.depth_scale
+       << " times those that the sensor reports, with an offset of " << found.depth_offset_per_m
+       << " +- " << sigma.depth_offset_per_m << " 1/m.\n"
+       << "This holds from now on. Measure the pose again: octurn calibrate.\n";
+  return text.str();
+}
+
+/// @param optics  of a depth sensor, if it is one
+void write_lens_report(const LensReport& report, const std::optional<SolvedOptics>& optics,
+                       const CalibrateBoardArguments& arguments) {
+  if (!arguments.json) {
+    write_standard_output(to_text(report) + (optics ? to_text(*optics) : ""));
+    return;
+  }
+  nlohmann::json object = to_json(report);
+  if (optics) {
+    object["optics"] = to_json(*optics);
+  }
+  write_standard_output(object.dump() + "\n");
 }
 
 struct PictureSize {
@@ -119,14 +150,16 @@ void show_advice(ProgressBar& bar, const CalibrationRun& run) {
   }
 }
 
-LensReport report_of_rig(const CalibrateBoardArguments& arguments) {
+CalibrationRun run_of_rig(const CalibrateBoardArguments& arguments) {
   const Config config = make_config(arguments.config);
   const RigOptions rig = rig_options(arguments.rig, config);
   const SignalStop signal;
   ScanStore store(config.data);
+  load_sensor_drivers();  // changes the working directory: before the first thread
   Scanner scanner(rig, config.limits, store);
   scanner.expect_ready();
-  scanner.look_at_board();  // cannot be refused as busy: this process does nothing else
+  scanner.look_at_board(metres_from_mm(
+      arguments.square_mm));  // cannot be refused as busy: this process does nothing else
   const CalibrationRun run = follow_calibration(scanner, signal.token(), show_advice);
   if (run.failure) {
     throw to_error(*run.failure);
@@ -137,7 +170,7 @@ LensReport report_of_rig(const CalibrateBoardArguments& arguments) {
   if (run.lens->accepted) {
     scanner.keep_lens();
   }
-  return *run.lens;
+  return run;
 }
 
 }  // namespace
@@ -149,15 +182,15 @@ bool calibrate_board(const CalibrateBoardArguments& arguments) {
                   "--keep: the lens of the rig's own camera is kept in any case",
                   "Name the folder of pictures, or leave --keep out.");
     }
-    const LensReport report = report_of_rig(arguments);
-    write_lens_report(report, arguments);
-    return report.accepted;
+    const CalibrationRun run = run_of_rig(arguments);
+    write_lens_report(*run.lens, run.optics, arguments);
+    return run.lens->accepted;
   }
   const LensReport report = report_from(arguments.folder);
   if (report.accepted && arguments.keep && !arguments.keep->empty()) {
     keep_lens(make_config(arguments.config).data, *arguments.keep, report);
   }
-  write_lens_report(report, arguments);
+  write_lens_report(report, {}, arguments);
   return report.accepted;
 }
 

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "calibration/board_pdf.hpp"
 #include "commands/model_commands.hpp"
 #include "commands/options.hpp"
 
@@ -19,7 +20,8 @@ BoardOptions add_board_options(CLI::App& command, CalibrateBoardArguments& argum
       command
           .add_option("--board", arguments.folder,
                       "find the lens of a camera with lasers: from the 8-bit PNGs of a printed "
-                      "board in this folder, or from a board that is held before the rig's camera")
+                      "board in this folder, or from a board that is held before the rig's "
+                      "camera; or the optics of the rig's Kinect, likewise")
           ->type_name("[=DIR]")
           ->expected(0, 1);
   command
@@ -27,6 +29,12 @@ BoardOptions add_board_options(CLI::App& command, CalibrateBoardArguments& argum
                   "keep what was found in DIR as the lens of the camera of this serial number, for "
                   "scans to come")
       ->type_name("SERIAL")
+      ->needs(board);
+  command
+      .add_option("--square-mm", arguments.square_mm,
+                  "side of the board's squares, as measured, for a Kinect (15)")
+      ->type_name("MM")
+      ->check(CLI::Range(min_board_square_mm, max_board_square_mm))
       ->needs(board);
   CLI::Option* print = command
                            .add_option("--print-board", arguments.pdf,

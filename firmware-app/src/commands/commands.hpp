@@ -150,13 +150,15 @@ struct CalibrateBoardArguments {
   std::optional<std::string> keep = {};  ///< serial number of the camera whose lens to store
   std::filesystem::path pdf = {};        ///< output of `print_board`
   std::string paper = "a4";              ///< paper size of the PDF
+  double square_mm = 15;                 ///< side of the board's squares, as measured
   bool json = false;                     ///< one line of JSON in place of text
   RigArguments rig = {};
   ConfigArguments config = {};
 };
 
 /// `octurn calibrate --board`: solves the lens of a camera with lasers, from stored pictures of a
-/// printed board or by the rig's camera. An accepted lens of the rig's camera is stored.
+/// printed board or by the rig's camera; or the optics of the rig's depth sensor. What is accepted
+/// of the rig is stored.
 /// @return false if the solution was rejected
 bool calibrate_board(const CalibrateBoardArguments& arguments);
 

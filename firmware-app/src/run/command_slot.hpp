@@ -82,9 +82,10 @@ struct WallCommand {
   int frames = 0;
 };
 
-/// Take pictures of a board to calibrate the lens of a camera with lasers.
+/// Take pictures of a board to calibrate the lens of a camera with lasers, or a depth sensor.
 struct LensCommand {
   static constexpr Rank rank = Rank::scan;
+  double square = 0;  ///< metres: side of the board's squares
 };
 
 /// The worker's commands.

@@ -604,9 +604,9 @@ Job Scanner::adopt(const ArchiveSource& archive) {
   return job;
 }
 
-bool Scanner::look_at_board() {
+bool Scanner::look_at_board(double square) {
   return begin({.kind = CalibrationRun::Kind::lens, .phase = CalibrationRun::Phase::looking},
-               LensCommand{});
+               LensCommand{square});
 }
 
 bool Scanner::solve_lens() {
@@ -622,13 +622,41 @@ void Scanner::expect_solved_lens() const {
   }
 }
 
+/// Puts a depth sensor's optics into force. Their scale replaces that of a known length: the pose's
+/// distances are scaled along, so that the platform stays at the same pixels. As in
+/// `Worker::keep_pose`, the pose is written first.
+void Scanner::keep_board_optics(const std::string& serial, const SolvedOptics& optics) {
+  const OpticsRecord record{.optics = optics,
+                            .origin = OpticsOrigin::board,
+                            .at = utc_text(std::chrono::system_clock::now(), rfc3339)};
+  const auto kept = optics_record(store_.data(), serial);
+  PoseRecord pose = calibration_.records({}).front();
+  if (pose.origin != PoseOrigin::drawing) {
+    const double before = pose.scale * (kept ? kept->optics.value.depth_scale : 1);
+    pose.platform_from_sensor.translation() *= optics.value.depth_scale / before;
+    pose.scale = 1;
+    pose.optics_of = serial;
+    pose.optics_at = record.at;
+    calibration_.set(pose);
+  }
+  keep_optics(store_.data(), serial, record);
+  remake_sensor_map(store_.data(), serial);
+  if (sensor_serial() == serial) {
+    board_.set_optics(read_optics(store_.data(), serial), find_map_summary(store_.data(), serial));
+  }
+}
+
 void Scanner::keep_lens() {
   const std::lock_guard lock(scans_);
   expect_solved_lens();
   const std::string& camera = solved_lens_->camera;
-  octurn::keep_lens(store_.data(), camera, solved_lens_->report);
-  if (sensor_serial() == camera) {
-    board_.set_lens(find_lens(store_.data(), camera));
+  if (solved_lens_->optics) {
+    keep_board_optics(camera, *solved_lens_->optics);
+  } else {
+    octurn::keep_lens(store_.data(), camera, solved_lens_->report);
+    if (sensor_serial() == camera) {
+      board_.set_lens(find_lens(store_.data(), camera));
+    }
   }
   solved_lens_.reset();
   board_.forget_calibration_run();

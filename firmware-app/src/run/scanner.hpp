@@ -174,10 +174,12 @@ class Scanner {
   /// @return false if a scan or another measurement runs
   bool look_at_wall(int frames);
 
-  /// Takes pictures of a board that somebody holds before the camera, and solves the camera's lens.
-  /// The result is in `calibration_run`; `keep_lens` puts it into force.
+  /// Takes pictures of a board that somebody holds before the camera, and solves the camera's lens,
+  /// or a depth sensor's optics. The result is in `calibration_run`; `keep_lens` puts it into
+  /// force.
+  /// @param square  metres: side of the board's squares, which only a depth sensor's optics need
   /// @return false if a scan or another measurement runs
-  bool look_at_board();
+  bool look_at_board(double square);
 
   /// Has the lens solved from the views so far. @return false if there are none
   bool solve_lens();
@@ -284,6 +286,7 @@ class Scanner {
   void expect_resumable(const Job& job) const;
   void expect_last_pose(const Job& pose) const;
   void expect_solved_lens() const;
+  void keep_board_optics(const std::string& serial, const SolvedOptics& optics);
   void remove_pose(const Job& pose);
   std::optional<BuildRun> offer_build(BuildCommand command);
   std::optional<Job> hand_over(Job job, Command command);

@@ -71,6 +71,7 @@ struct KnownSensor {
       {};                                    ///< when it opened; nullopt: closed
   std::optional<SensorMapSummary> map = {};  ///< nullopt: this machine has none of it
   std::optional<KeptLens> lens = {};         ///< stored lens of a camera; nullopt: none
+  bool has_infrared = false;                 ///< a depth sensor that can look at a board
   /// Of a depth sensor: those in force, then the earlier ones; empty: as the sensor reports.
   std::vector<OpticsRecord> optics = {};
 };

@@ -15,6 +15,7 @@
 #include "calibration/optics_files.hpp"
 #include "calibration/sensor_map_files.hpp"
 #include "calibration/solve_pose.hpp"
+#include "capture/board_views.hpp"
 #include "capture/depth_scale.hpp"
 #include "capture/measure_laser_turn.hpp"
 #include "capture/scan_of_rig.hpp"
@@ -712,7 +713,8 @@ void Worker::carry_out(CalibrationRun run,
   release_rig();
   const std::lock_guard lock(ports_.scans);
   if (run.lens && run.lens->accepted) {
-    ports_.solved_lens = SolvedLens{.camera = run.camera, .report = *run.lens};
+    ports_.solved_lens =
+        SolvedLens{.camera = run.camera, .report = *run.lens, .optics = run.optics};
   }
   ports_.slot.finish();  // frees the slot before clients see the end
   ports_.board.set_calibration_run(std::move(run));
@@ -800,7 +802,8 @@ void Worker::introduce_sensor() {
   introduced_ = since;
   const bool is_camera = rig_.laser() != nullptr;
   KnownSensor known{.serial = is_camera ? rig_.camera().serial() : rig_.sensor().serial(),
-                    .since = since};
+                    .since = since,
+                    .has_infrared = !is_camera && rig_.sensor().has_infrared()};
   try {
     if (!is_camera) {
       ports_.calibration.drop_without_optics(known.serial);
@@ -815,17 +818,70 @@ void Worker::introduce_sensor() {
   ports_.board.set_known_sensor(std::move(known));
 }
 
-void Worker::carry_out(LensCommand& /*command*/, const std::stop_source& stop) {
+void Worker::carry_out(LensCommand& command, const std::stop_source& stop) {
   carry_out({.kind = CalibrationRun::Kind::lens, .phase = CalibrationRun::Phase::looking},
-            [&](CalibrationRun& run) { find_lens(run, stop.get_token()); });
+            [&](CalibrationRun& run) {
+              if (told_laser_) {
+                find_lens(run, stop.get_token());
+              } else {
+                find_optics(run, command.square, stop.get_token());
+              }
+            });
+}
+
+/// Whether a measurement by a board was cancelled; else it is solved from the views so far.
+bool Worker::is_board_put_away(CalibrationRun& run, const std::stop_token& stop) const {
+  const bool is_cancelled = stop.stop_requested() &&
+                            (ports_.slot.scan_stop() != ScanStop::pause || ports_.slot.has_ended());
+  if (is_cancelled) {
+    run.state = CalibrationRun::State::cancelled;
+  }
+  return is_cancelled;
+}
+
+/// The same as `find_lens` for a depth sensor: solves its optics.
+void Worker::find_optics(CalibrationRun& run, double square, const std::stop_token& stop) {
+  ports_.heartbeat.suspend();  // this takes as long as somebody holds a board
+  DepthSensor& sensor = rig_.sensor();
+  run.camera = sensor.serial();
+  if (run.camera.empty()) {
+    throw Error(ErrorCode::sensor_other,
+                sensor.name() + ": reports no serial number, under which its optics could be kept",
+                "Measure a known length instead.");
+  }
+  const auto show = [&](const Picture& picture, const BoardLook& look) {
+    set_sensor_ready(sensor.name());
+    introduce_sensor();
+    ports_.board.set_camera_picture(picture);
+    ports_.heartbeat.suspend();
+    if (look.taken > 0) {
+      ports_.slot.report_lens_view();
+    }
+    run.look = look;
+    run.stop = look.taken;
+    run.stops = look.wanted;
+    ports_.board.set_calibration_run(run);
+  };
+  const std::vector<DepthBoardView> views = take_board_views(sensor, stop, show);
+  if (is_board_put_away(run, stop)) {
+    return;
+  }
+  run.phase = CalibrationRun::Phase::solving;
+  ports_.board.set_calibration_run(run);
+  const Intrinsics& told = sensor.intrinsics();
+  const DepthOpticsReport report = calibrate_depth_optics(views, told.width, told.height, square);
+  run.lens = report.lens;
+  if (report.lens.accepted) {
+    run.optics = report.optics;
+    log::info("calibration", "the infrared picture is shifted by " +
+                                 std::to_string(report.shift.x()) + ", " +
+                                 std::to_string(report.shift.y()) + " pixels");
+  }
+  run.state = run.lens->accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
 }
 
 /// Takes views of a board until they suffice or `Scanner::solve_lens` is called; solves the lens.
 void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
-  if (!told_laser_) {
-    throw Error(ErrorCode::sensor_other, "this rig has a depth sensor, and no camera with lasers",
-                "A board is for the lens of such a camera.");
-  }
   ports_.heartbeat.suspend();  // this takes as long as somebody holds a board
   Camera& camera = rig_.camera();
   if (camera.serial().empty()) {
@@ -854,9 +910,7 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
     run.stops = watch.look().wanted;
     ports_.board.set_calibration_run(run);
   }
-  if (stop.stop_requested() &&
-      (ports_.slot.scan_stop() != ScanStop::pause || ports_.slot.has_ended())) {
-    run.state = CalibrationRun::State::cancelled;
+  if (is_board_put_away(run, stop)) {
     return;
   }
   run.phase = CalibrationRun::Phase::solving;

@@ -86,6 +86,8 @@ class Worker {
   void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
   void measure_wall(CalibrationRun& run, const std::stop_token& stop);
   void find_lens(CalibrationRun& run, const std::stop_token& stop);
+  void find_optics(CalibrationRun& run, double square, const std::stop_token& stop);
+  bool is_board_put_away(CalibrationRun& run, const std::stop_token& stop) const;
   std::string first_scan() const;
   void use_lens(const std::string& begun);
   void use_pose();

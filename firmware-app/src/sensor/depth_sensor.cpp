@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "octurn/error.hpp"
 #include "rig/simulation.hpp"
 
 namespace octurn {
@@ -15,6 +16,13 @@ std::unique_ptr<DepthSensor> open_sensor(const std::string& uri) {
   return std::filesystem::is_regular_file(uri, unreadable) ? open_oni_file(uri)
                                                            : open_openni_sensor(uri);
 }
+
+std::optional<Picture> DepthSensor::read_infrared(const std::stop_token& /*stop*/) {
+  throw Error(ErrorCode::sensor_other, name() + ": shows no infrared pictures",
+              "A printed board is for a Kinect v1, or for a camera with lasers.");
+}
+
+void DepthSensor::show_board(int /*hold*/) {}
 
 void DepthSensor::show_wall(std::optional<double> /*distance*/) {}
 

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "octurn/png.hpp"
 #include "octurn/snapshot.hpp"
 #include "rig/packet_counts.hpp"
 #include "rig/tilt.hpp"
@@ -43,6 +44,15 @@ class DepthSensor {
   ///               if the device is gone
   virtual std::optional<TimedFrame> read(const std::stop_token& stop) = 0;
 
+  /// Whether the sensor shows infrared pictures of the size of its depth frames.
+  virtual bool has_infrared() const { return false; }
+
+  /// Waits for the next infrared picture. The first one stops the depth stream, and the next depth
+  /// frame the infrared one.
+  /// @return nothing if a stop was requested first
+  /// @throws Error "sensor-other" if the sensor shows none; and as `read`
+  virtual std::optional<Picture> read_infrared(const std::stop_token& stop);
+
   /// The attitude from the accelerometer; nothing if the sensor has none that can be read. A
   /// Kinect is asked for it over USB, which takes up to 500 ms: not while frames are taken.
   virtual std::optional<Tilt> tilt() const = 0;
@@ -59,6 +69,10 @@ class DepthSensor {
   /// them.
   /// @param distance  metres; nothing: back to the platform
   virtual void show_wall(std::optional<double> distance);
+
+  /// Shows a printed board to a simulated sensor. Other sensors ignore it: a person does it.
+  /// @param hold  number of the place and tilt in which it is held, from 1; 0: it is put away
+  virtual void show_board(int hold);
 
   /// Turns the object of a simulated sensor over. Other sensors ignore it: a person does it.
   /// @param pose  number of the pose; 0 is the initial one

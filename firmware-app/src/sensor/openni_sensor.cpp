@@ -89,6 +89,7 @@ class OpenNiSensor final : public DepthSensor, public PacketLogger {
     load_sensor_drivers();
     open_stream(uri);
     intrinsics_ = to_intrinsics(stream_);
+    infrared_mode_ = find_infrared_mode();
     name_ = device_.getDeviceInfo().getName();
     has_steady_stamps_ = has_octurns_driver(device_.getDeviceInfo().getUri());
     is_simulated_ = device_.isPropertySupported(platform_angle_property);
@@ -99,6 +100,8 @@ class OpenNiSensor final : public DepthSensor, public PacketLogger {
   const Intrinsics& intrinsics() const override { return intrinsics_; }
   std::string serial() const override;
   std::optional<TimedFrame> read(const std::stop_token& stop) override;
+  bool has_infrared() const override { return infrared_mode_.has_value(); }
+  std::optional<Picture> read_infrared(const std::stop_token& stop) override;
   std::optional<Tilt> tilt() const override;
   std::optional<PacketCounts> packet_counts() const override;
   bool log_packets(int count) override;
@@ -107,17 +110,25 @@ class OpenNiSensor final : public DepthSensor, public PacketLogger {
   void show_wall(std::optional<double> distance) override {
     simulate(wall_property, distance.value_or(0));
   }
+  void show_board(int hold) override { simulate(board_property, hold); }
   void set_object_pose(int pose) override { simulate(object_pose_property, pose); }
 
  private:
   void simulate(int property, double value);
   void open_stream(const std::string& uri);
+  std::optional<openni::VideoMode> find_infrared_mode();
+  void show_depth();
+  void show_infrared();
+  bool wait_for(openni::VideoStream& stream, const std::stop_token& stop);
   bool is_lost() const;
   TimedFrame take_frame();
   std::chrono::duration<double> sensor_time() const;
 
   openni::Device device_ = {};
   openni::VideoStream stream_ = {};
+  std::optional<openni::VideoMode> infrared_mode_ = {};
+  openni::VideoStream infrared_ = {};  // created for the first infrared picture
+  bool shows_infrared_ = false;        // in place of depth: one stream at a time
   std::string name_ = {};
   Intrinsics intrinsics_ = {};
   bool has_steady_stamps_ = false;  // other drivers stamp frames by clocks of their own
@@ -160,14 +171,61 @@ std::chrono::duration<double> OpenNiSensor::sensor_time() const {
                    : steady_clock::now().time_since_epoch();
 }
 
-std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
+/// Finds the mode of 8-bit pictures of the depth frames' size.
+std::optional<openni::VideoMode> OpenNiSensor::find_infrared_mode() {
+  const openni::SensorInfo* const camera = device_.getSensorInfo(openni::SENSOR_IR);
+  if (camera == nullptr) {
+    return std::nullopt;
+  }
+  const auto& modes = camera->getSupportedVideoModes();
+  for (int i = 0; i < modes.getSize(); ++i) {
+    if (modes[i].getPixelFormat() == openni::PIXEL_FORMAT_GRAY8 &&
+        modes[i].getResolutionX() == intrinsics_.width &&
+        modes[i].getResolutionY() == intrinsics_.height) {
+      return modes[i];
+    }
+  }
+  return std::nullopt;
+}
+
+void OpenNiSensor::show_depth() {
+  if (shows_infrared_) {
+    infrared_.stop();
+    shows_infrared_ = false;
+    expect_ok(stream_.start(), "start its depth stream");
+  }
+}
+
+void OpenNiSensor::show_infrared() {
+  if (shows_infrared_) {
+    return;
+  }
+  if (!infrared_.isValid()) {
+    if (!infrared_mode_) {
+      DepthSensor::read_infrared({});  // throws
+    }
+    expect_ok(infrared_.create(device_, openni::SENSOR_IR), "find its infrared stream");
+    expect_ok(infrared_.setVideoMode(*infrared_mode_), "set its infrared mode");
+    expect_ok(infrared_.setMirroringEnabled(false), "switch off its mirroring");
+  }
+  stream_.stop();
+  shows_infrared_ = true;
+  if (infrared_.start() != openni::STATUS_OK) {
+    show_depth();
+    throw Error(ErrorCode::sensor_failed, "sensor: does not start its infrared stream",
+                "Unplug the sensor, and plug it in again.");
+  }
+}
+
+/// @return false if a stop was requested first
+bool OpenNiSensor::wait_for(openni::VideoStream& stream, const std::stop_token& stop) {
   const auto begin = sensor_time();
   const auto counted = packet_counts();
   while (!stop.stop_requested()) {
     // Measured before the wait: a frame that has arrived is read, however late this thread wakes.
     const auto silence = sensor_time() - begin;
-    if (wait_for_frame(stream_, poll_interval)) {
-      return take_frame();
+    if (wait_for_frame(stream, poll_interval)) {
+      return true;
     }
     if (is_lost()) {
       throw Error(ErrorCode::sensor_lost, "sensor: " + name() + " is gone", missing_sensor_hint);
@@ -176,7 +234,20 @@ std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
       throw silence_error(longest_silence, lost_share(counted, packet_counts()));
     }
   }
-  return std::nullopt;
+  return false;
+}
+
+std::optional<TimedFrame> OpenNiSensor::read(const std::stop_token& stop) {
+  show_depth();
+  return wait_for(stream_, stop) ? std::optional(take_frame()) : std::nullopt;
+}
+
+std::optional<Picture> OpenNiSensor::read_infrared(const std::stop_token& stop) {
+  show_infrared();
+  if (!wait_for(infrared_, stop)) {
+    return std::nullopt;
+  }
+  return to_picture(read_frame(infrared_));
 }
 
 std::optional<Tilt> OpenNiSensor::tilt() const { return property_of<Tilt>(device_, tilt_property); }

@@ -54,6 +54,16 @@ openni::VideoFrameRef read_frame(openni::VideoStream& stream) {
   return frame;
 }
 
+Picture to_picture(const openni::VideoFrameRef& frame) {
+  Picture copy{.width = frame.getWidth(), .height = frame.getHeight(), .samples = {}};
+  const auto* row = static_cast<const std::uint8_t*>(frame.getData());
+  for (int v = 0; v < copy.height; ++v) {
+    copy.samples.insert(copy.samples.end(), row, row + copy.width);
+    row += frame.getStrideInBytes();
+  }
+  return copy;
+}
+
 DepthFrame to_depth_frame(const openni::VideoFrameRef& frame) {
   DepthFrame copy = {.width = frame.getWidth(), .height = frame.getHeight()};
   copy.depth.reserve(static_cast<std::size_t>(copy.width) * static_cast<std::size_t>(copy.height));

@@ -23,6 +23,9 @@ bool wait_for_frame(openni::VideoStream& stream, std::chrono::milliseconds timeo
 /// Reads a frame, and waits for it. @throws Error "sensor-failed"
 openni::VideoFrameRef read_frame(openni::VideoStream& stream);
 
+/// Copies a picture of 8-bit grey levels.
+Picture to_picture(const openni::VideoFrameRef& frame);
+
 DepthFrame to_depth_frame(const openni::VideoFrameRef& frame);
 
 /// The error "sensor-silent" of a sensor that has sent no frame for so long.

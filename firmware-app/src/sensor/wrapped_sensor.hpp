@@ -21,10 +21,15 @@ class WrappedSensor : public DepthSensor {
   std::optional<TimedFrame> read(const std::stop_token& stop) override {
     return sensor_->read(stop);
   }
+  bool has_infrared() const override { return sensor_->has_infrared(); }
+  std::optional<Picture> read_infrared(const std::stop_token& stop) override {
+    return sensor_->read_infrared(stop);
+  }
   std::optional<Tilt> tilt() const override { return sensor_->tilt(); }
   std::optional<PacketCounts> packet_counts() const override { return sensor_->packet_counts(); }
   void show_angle(double angle) override { sensor_->show_angle(angle); }
   void show_wall(std::optional<double> distance) override { sensor_->show_wall(distance); }
+  void show_board(int hold) override { sensor_->show_board(hold); }
   void set_object_pose(int pose) override { sensor_->set_object_pose(pose); }
 
  protected:

@@ -67,6 +67,7 @@ Response send_calibration(App& app, int status) {
   body["sensor_map"] = sensor->map ? to_json(*sensor->map) : json();
   body["sensor_on_s"] = sensor->since ? json(std::floor(open.count())) : json();
   body["lens"] = lens_json(app, sensor->lens);
+  body["infrared"] = sensor->has_infrared;
   body["optics"] = optics_json(sensor->optics);
   body["run"] = *run ? to_json(**run) : json();
   return json_response(body, status);
@@ -144,9 +145,11 @@ void carry_out(App& app, LensChange change) {
 }
 
 void start_lens(App& app, JsonObject& keys) {
+  const double square_mm =
+      keys.number("square_mm", min_board_square_mm, max_board_square_mm).value_or(board_square_mm);
   keys.refuse_unread();
   expect_no_update(app);
-  if (!app.scanner.look_at_board()) {
+  if (!app.scanner.look_at_board(metres_from_mm(square_mm))) {
     refuse_busy();
   }
 }
@@ -256,7 +259,7 @@ Response send_sensor_map(App& app) {
 
 Response send_points(App& app) {
   const auto camera = app.scanner.camera_frame();
-  if (camera->picture.width > 0) {
+  if (camera->picture.width > 0 && app.rig.laser) {
     throw Error(ErrorCode::not_found, "a camera with lasers measures no depth",
                 "GET /api/v1/preview/depth.png shows what it sees.");
   }
@@ -265,7 +268,7 @@ Response send_points(App& app) {
   const double scale = app.scanner.calibration().in_force({}).depth_scale;
   Intrinsics lens = scaled(camera->lens, scale);
   DepthFrame frame = camera->frame;
-  if (!known.empty()) {
+  if (!known.empty() && frame.width > 0) {  // none while a Kinect looks at a board
     frame = rectified(std::move(frame), lens, known.front().optics.value);
     lens = rectified(lens, known.front().optics.value);
   }

@@ -5,12 +5,15 @@
 namespace octurn {
 
 OniStatus DepthDevice::getSensorInfoList(OniSensorInfo** infos, int* count) {
-  *infos = &sensor_;
-  *count = 1;
+  *infos = sensors_.data();
+  *count = has_infrared_stream() ? 2 : 1;
   return ONI_STATUS_OK;
 }
 
 oni::driver::StreamBase* DepthDevice::createStream(OniSensorType type) {
+  if (type == ONI_SENSOR_IR) {
+    return create_infrared_stream().release();
+  }
   return type == ONI_SENSOR_DEPTH ? create_depth_stream().release() : nullptr;
 }
 

@@ -7,15 +7,17 @@
 #define XN_DELETE(pointer) delete (pointer)
 #include <Driver/OniDriverAPI.h>
 
+#include <array>
 #include <memory>
 #include <string>
 #include <string_view>
 
 #include "depth_stream.hpp"
+#include "infrared_stream.hpp"
 
 namespace octurn {
 
-/// A device whose only sensor is a depth sensor.
+/// A device with a depth sensor, and perhaps the infrared camera behind it.
 class DepthDevice : public oni::driver::DeviceBase {
  public:
   OniStatus getSensorInfoList(OniSensorInfo** infos, int* count) override;
@@ -25,9 +27,15 @@ class DepthDevice : public oni::driver::DeviceBase {
  protected:
   virtual std::unique_ptr<DepthStream> create_depth_stream() = 0;
 
+  /// Returns null if the device shows no infrared pictures.
+  virtual std::unique_ptr<InfraredStream> create_infrared_stream() { return nullptr; }
+  virtual bool has_infrared_stream() const { return false; }
+
  private:
-  OniVideoMode mode_ = DepthStream::video_mode;
-  OniSensorInfo sensor_ = {ONI_SENSOR_DEPTH, 1, &mode_};
+  OniVideoMode depth_mode_ = DepthStream::video_mode;
+  OniVideoMode infrared_mode_ = InfraredStream::video_mode;
+  std::array<OniSensorInfo, 2> sensors_ = {
+      {{ONI_SENSOR_DEPTH, 1, &depth_mode_}, {ONI_SENSOR_IR, 1, &infrared_mode_}}};
 };
 
 /// A driver of the devices whose URIs begin with one scheme. It has no thread that watches for

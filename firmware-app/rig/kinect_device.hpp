@@ -35,4 +35,8 @@ inline constexpr int usb_thread_priority = 30;
 /// The depth of a pixel whose packet was lost. No reading's depth is that large.
 inline constexpr std::uint16_t lost_depth = 65535;
 
+/// The grey level of a pixel of an infrared picture whose packet was lost. All others are at least
+/// 1.
+inline constexpr std::uint8_t lost_infrared = 0;
+
 }  // namespace octurn

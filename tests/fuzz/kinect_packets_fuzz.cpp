@@ -10,8 +10,22 @@
 
 // The input is a list of packets: two bytes for its length, little-endian, then the packet.
 // Whatever they are, a frame lacks packets in rising order, and never all of them; and every
-// reading that a lost packet had a bit of is lost. The first byte chooses between depth and a
-// stream of few, short packets, which an input can fill.
+// reading that a lost packet had a bit of is lost. The first byte chooses among depth, infrared
+// pictures and a stream of few, short packets, which an input can fill.
+
+namespace {
+
+octurn::PacketFormat chosen_by(std::uint8_t byte) {
+  if ((byte & 1U) != 0) {
+    return octurn::depth_packets;
+  }
+  return (byte & 2U) != 0
+             ? octurn::infrared_packets
+             : octurn::PacketFormat{
+                   .stream = 0x70, .reading_bits = 11, .frame_bytes = 22, .payload_bytes = 4};
+}
+
+}  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace octurn;
@@ -19,10 +33,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   if (input.empty()) {
     return 0;
   }
-  const bool is_depth = (input[0] & 1U) != 0;
-  const PacketFormat format =
-      is_depth ? depth_packets
-               : PacketFormat{.stream = 0x70, .frame_bytes = 22, .payload_bytes = 4};
+  const PacketFormat format = chosen_by(input[0]);
+  const std::size_t of_packet = 8 * format.payload_bytes / format.reading_bits;
   input = input.subspan(1);
   PacketFrames frames(format, [&](const ReceivedFrame& frame) {
     const auto packets = static_cast<std::size_t>(format.packets());
@@ -31,13 +43,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     if (frame.bytes.size() != format.frame_bytes || frame.lost.size() >= packets || !rising) {
       std::abort();
     }
-    if (is_depth) {
-      std::vector<std::uint16_t> readings(std::size_t{640} * 480);
-      unpack_depth(frame, readings);
-      const auto lost = static_cast<std::size_t>(std::ranges::count(readings, lost_reading));
-      if (lost + 450 < frame.lost.size() * 1271 || lost > frame.lost.size() * 1273) {
-        std::abort();
-      }
+    std::vector<std::uint16_t> readings(8 * format.frame_bytes / format.reading_bits);
+    unpack_readings(frame, format, readings);
+    const auto lost = static_cast<std::size_t>(std::ranges::count(readings, lost_reading));
+    if (lost + 600 < frame.lost.size() * of_packet || lost > frame.lost.size() * (of_packet + 2)) {
+      std::abort();
     }
   });
   while (input.size() >= 2) {

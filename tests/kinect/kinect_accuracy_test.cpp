@@ -89,7 +89,7 @@ class WireSensor final : public DepthSensor {
       return;
     }
     std::vector<std::uint16_t> readings(EmulatedCamera::pixels);
-    unpack_depth(frame, readings);
+    unpack_readings(frame, depth_packets, readings);
     TimedFrame timed{.frame = {.width = 640,
                                .height = 480,
                                .depth = std::vector<std::uint16_t>(EmulatedCamera::pixels)},

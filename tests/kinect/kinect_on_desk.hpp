@@ -17,15 +17,15 @@ namespace octurn {
 using Readings = std::vector<std::uint16_t>;
 
 /// An emulated Kinect for this test and the programs that it starts. It repeats a sequence of
-/// frames.
+/// frames, and one of infrared pictures, each of 640 x 488 readings.
 class KinectOnDesk {
  public:
-  explicit KinectOnDesk(const std::vector<Readings>& frames) {
-    std::string seen;
-    for (const Readings& frame : frames) {
-      seen.append(reinterpret_cast<const char*>(frame.data()), frame.size() * sizeof frame[0]);
+  explicit KinectOnDesk(const std::vector<Readings>& frames,
+                        const std::vector<Readings>& infrared = {}) {
+    put(folder_.path() / "frames", bytes_of(frames));
+    if (!infrared.empty()) {
+      put(folder_.path() / "infrared", bytes_of(infrared));
     }
-    put(folder_.path() / "frames", seen);
     put(folder_.path() / "kinect", std::string(sizeof(EmulatedKinect), '\0'));
     control_ = std::make_unique<MappedFile>(folder_.path() / "kinect");
     std::construct_at(&kinect());
@@ -48,6 +48,14 @@ class KinectOnDesk {
   }
 
  private:
+  static std::string bytes_of(const std::vector<Readings>& frames) {
+    std::string bytes;
+    for (const Readings& frame : frames) {
+      bytes.append(reinterpret_cast<const char*>(frame.data()), frame.size() * sizeof frame[0]);
+    }
+    return bytes;
+  }
+
   TemporaryFolder folder_;
   std::unique_ptr<MappedFile> control_;
 };

@@ -134,11 +134,11 @@ class UsbipDeviceTest : public ::testing::Test {
     return reply;
   }
 
-  /// All packets of the depth endpoint in one frame's 267 microframes.
-  Reply frame_of_packets() {
+  /// All packets of an endpoint in one frame's 267 microframes.
+  Reply frame_of_packets(std::uint32_t endpoint = 2) {
     Reply all;
     for (const std::uint32_t count : {100U, 100U, 67U}) {
-      EXPECT_TRUE(submit_packets(++sequence_, count));
+      EXPECT_TRUE(submit_packets(++sequence_, count, endpoint));
       EXPECT_TRUE(device_->complete(*device_->due()));
       const Reply some = packets(count);
       all.data.insert(all.data.end(), some.data.begin(), some.data.end());
@@ -149,7 +149,10 @@ class UsbipDeviceTest : public ::testing::Test {
 
   EmulatedKinect kinect_;
   std::vector<std::uint16_t> frame_ = std::vector<std::uint16_t>(EmulatedCamera::pixels);
-  EmulatedCamera camera_{kinect_, over_and_over(frame_)};
+  std::vector<std::uint16_t> infrared_ =
+      std::vector<std::uint16_t>(EmulatedCamera::infrared_pixels, 0x155);
+  EmulatedCamera camera_{
+      kinect_, over_and_over(frame_), {}, over_and_over(infrared_, infrared_.size())};
   FileDescriptor host_;
   std::optional<UsbipDevice> device_;
   std::uint32_t sequence_ = 0;
@@ -231,6 +234,21 @@ TEST_F(UsbipDeviceTest, SendsNoDepthUnlessItIsAskedFor) {
   EXPECT_TRUE(submit_packets(++sequence_, 16, 1));  // on the video endpoint
   EXPECT_TRUE(device_->complete(*device_->due()));
   EXPECT_TRUE(packets(16).data.empty());
+}
+
+TEST_F(UsbipDeviceTest, SendsInfraredPicturesOnTheVideoEndpoint) {
+  set_register(0x1A, 1);
+  set_register(0x1B, 30);
+  set_register(0x05, 3);
+  EXPECT_TRUE(frame_of_packets().data.empty());
+  const Reply sent = frame_of_packets(1);
+  EXPECT_EQ(std::ranges::count_if(sent.packets, [](std::uint32_t bytes) { return bytes > 0; }),
+            205);
+  EXPECT_EQ(sent.data.size(), 205 * 12 + infrared_.size() * 10 / 8);
+  EXPECT_EQ(Bytes(sent.data.begin() + 12, sent.data.begin() + 17),
+            Bytes({0x55, 0x55, 0x55, 0x55, 0x55}));
+  set_register(0x05, 0);
+  EXPECT_TRUE(frame_of_packets(1).data.empty());
 }
 
 TEST_F(UsbipDeviceTest, LosesThePacketsThatATestNames) {

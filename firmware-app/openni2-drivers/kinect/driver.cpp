@@ -30,7 +30,7 @@ int index_in(std::string_view uri) {
 
 class Device final : public DepthDevice {
  public:
-  explicit Device(int index) : kinect_(index) {}
+  Device(int index, oni::driver::DriverServices& services) : kinect_(index), services_(services) {}
 
   OniBool isPropertySupported(int property) override {
     switch (property) {
@@ -96,10 +96,15 @@ class Device final : public DepthDevice {
 
  private:
   std::unique_ptr<DepthStream> create_depth_stream() override {
-    return std::make_unique<KinectStream>(kinect_);
+    return std::make_unique<KinectDepthStream>(kinect_, services_);
   }
+  std::unique_ptr<InfraredStream> create_infrared_stream() override {
+    return std::make_unique<KinectInfraredStream>(kinect_, services_);
+  }
+  bool has_infrared_stream() const override { return true; }
 
   Kinect kinect_;
+  oni::driver::DriverServices& services_;
 };
 
 class Driver final : public DepthDriver {
@@ -124,7 +129,7 @@ class Driver final : public DepthDriver {
 
  private:
   std::unique_ptr<DepthDevice> open(std::string_view uri) override {
-    return std::make_unique<Device>(index_in(uri));
+    return std::make_unique<Device>(index_in(uri), getServices());
   }
 };
 

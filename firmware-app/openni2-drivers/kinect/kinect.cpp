@@ -13,8 +13,11 @@ namespace {
 using std::chrono::steady_clock;
 using namespace std::chrono_literals;
 
-constexpr std::size_t pixels = std::size_t{640} * 480;
-constexpr std::uint8_t depth_endpoint = 0x82;
+constexpr std::array<CameraRegister, 7> depth_start{
+    {{0x105, 0}, {0x06, 0}, {0x12, 3}, {0x13, 1}, {0x14, 30}, {0x06, 2}, {0x17, 0}}};
+// As libfreenect and the kernel's gspca_kinect do it.
+constexpr std::array<CameraRegister, 7> infrared_start{
+    {{0x105, 0}, {0x05, 0}, {0x19, 0}, {0x1A, 1}, {0x1B, 30}, {0x05, 3}, {0x48, 0}}};
 
 /// Model 1414, whose motor answers without firmware.
 constexpr std::uint16_t release_of_1414 = 0x010B;
@@ -92,6 +95,11 @@ std::optional<Tilt> to_tilt(std::span<const std::uint8_t> state) {
 
 }  // namespace
 
+constinit const CameraStream depth_camera{
+    .endpoint = 0x82, .packets = depth_packets, .start = depth_start, .stop = {0x06, 0}};
+constinit const CameraStream infrared_camera{
+    .endpoint = 0x81, .packets = infrared_packets, .start = infrared_start, .stop = {0x05, 0}};
+
 int Kinect::count() { return static_cast<int>(cameras_among(usb_parts()).size()); }
 
 Kinect::Kinect(int index)
@@ -127,8 +135,8 @@ std::optional<Tilt> Kinect::tilt() {
 }
 
 bool Kinect::set_near_mode(bool on) try {
-  const std::unique_lock lock(usb_, std::try_to_lock);
-  if (!lock.owns_lock()) {
+  const Use used = use();
+  if (!used) {
     return false;
   }
   // As libfreenect does it: the projector's brightness, a pause, and the range.
@@ -141,40 +149,30 @@ bool Kinect::set_near_mode(bool on) try {
   return false;
 }
 
-/// Starts the depth camera: 640 x 480, 30 Hz, 11 bits, not mirrored, projector always on.
-void Kinect::start_depth() {
-  struct Register {
-    std::uint16_t address = 0;
-    std::uint16_t value = 0;
-  };
-  constexpr std::array<Register, 7> registers{
-      {{0x105, 0}, {0x06, 0}, {0x12, 3}, {0x13, 1}, {0x14, 30}, {0x06, 2}, {0x17, 0}}};
-  const auto deadline = steady_clock::now() + starting_patience;
-  for (const auto& [address, value] : registers) {
-    commands_.write_register(address, value, deadline);
-  }
-}
-
-void Kinect::stream(const std::stop_token& stop,
+void Kinect::stream(Use /*use*/, const CameraStream& stream, const std::stop_token& stop,
                     const std::function<void(const RawFrame&)>& on_frame) {
-  const std::lock_guard lock(usb_);
-  std::vector<std::uint16_t> readings(pixels);
-  PacketFrames frames(depth_packets, [&](const ReceivedFrame& frame) {
-    if (count_packets(frame)) {
-      unpack_depth(frame, readings);
+  const PacketFormat& format = stream.packets;
+  std::vector<std::uint16_t> readings(8 * format.frame_bytes / format.reading_bits);
+  PacketFrames frames(format, [&](const ReceivedFrame& frame) {
+    if (count_packets(frame, format)) {
+      unpack_readings(frame, format, readings);
       on_frame({.readings = readings, .time = frame.begin});
     }
   });
   try {
-    camera_->begin_stream(depth_endpoint, [&](const IsoPacket& packet) {
+    camera_->begin_stream(stream.endpoint, [&](const IsoPacket& packet) {
       log(packet);
       frames.take(packet.data, packet.time);
     });
-    start_depth();
+    const auto deadline = steady_clock::now() + starting_patience;
+    for (const auto& [address, value] : stream.start) {
+      commands_.write_register(address, value, deadline);
+    }
     while (!stop.stop_requested() && camera_->handle_events()) {
     }
     is_lost_ = !stop.stop_requested();
-    commands_.write_register(0x06, 0, steady_clock::now() + stopping_patience);
+    commands_.write_register(stream.stop.address, stream.stop.value,
+                             steady_clock::now() + stopping_patience);
   } catch (const Error&) {
     is_lost_ = true;
   }
@@ -184,14 +182,14 @@ void Kinect::stream(const std::stop_token& stop,
 }
 
 /// @return whether enough of its packets arrived: 80 %
-bool Kinect::count_packets(const ReceivedFrame& frame) {
+bool Kinect::count_packets(const ReceivedFrame& frame, const PacketFormat& format) {
   const auto lost = static_cast<int>(frame.lost.size());
-  const bool is_enough = 5 * lost <= depth_packets.packets();
+  const bool is_enough = 5 * lost <= format.packets();
   const std::lock_guard lock(counts_mutex_);
   ++(lost == 0   ? counts_.whole_frames
      : is_enough ? counts_.partial_frames
                  : counts_.dropped_frames);
-  counts_.packets += depth_packets.packets();
+  counts_.packets += format.packets();
   counts_.lost_packets += lost;
   return is_enough;
 }

@@ -23,16 +23,37 @@
 
 namespace octurn {
 
-/// A frame of 640 x 480 raw readings, `lost_reading` where its packet was lost, and the arrival of
-/// its first packet. The exposure ended before that.
+/// A register of the camera, and a value for it.
+struct CameraRegister {
+  std::uint16_t address = 0;
+  std::uint16_t value = 0;
+};
+
+/// One of the streams of the Kinect's camera.
+struct CameraStream {
+  std::uint8_t endpoint = 0;
+  PacketFormat packets = {};
+  std::span<const CameraRegister> start = {};  ///< what starts it, in this order
+  CameraRegister stop = {};
+};
+
+/// Depth: 640 x 480, 30 Hz, 11 bits, not mirrored, projector always on.
+extern const CameraStream depth_camera;
+
+/// The picture in which the Kinect finds its depths: 640 x 488, 30 Hz, 10 bits, not mirrored,
+/// projector always on.
+extern const CameraStream infrared_camera;
+
+/// A frame of raw readings, `lost_reading` where its packet was lost, and the arrival of its first
+/// packet. The exposure ended before that.
 struct RawFrame {
   std::span<const std::uint16_t> readings = {};
   std::chrono::steady_clock::time_point time = {};
 };
 
 /// A Kinect v1 on USB. Its colour camera is never started: a Raspberry Pi has no bandwidth for
-/// both. Its audio part is left alone: a reset, which models 1473 and for Windows need before their
-/// accelerometer answers, makes some of them vanish.
+/// it and depth. Its audio part is left alone: a reset, which models 1473 and for Windows need
+/// before their accelerometer answers, makes some of them vanish.
 class Kinect {
  public:
   /// Takes at most 5 s.
@@ -57,13 +78,24 @@ class Kinect {
 
   bool has_near_mode() const { return has_near_mode_; }
 
-  /// @return false if the depth stream runs, which does not allow a change, or the device refuses
+  /// @return false if a stream runs, which does not allow a change, or the device refuses
   bool set_near_mode(bool on);
 
-  /// Runs the depth stream until a stop is requested or the device is gone; then returns within 2
-  /// s.
+  struct Release {
+    void operator()(std::atomic<bool>* is_used) const { *is_used = false; }
+  };
+  /// The use of the camera, until this is destroyed.
+  using Use = std::unique_ptr<std::atomic<bool>, Release>;
+
+  /// @return null if somebody else uses the camera: it has one stream at a time
+  Use use() { return is_used_.exchange(true) ? nullptr : Use(&is_used_); }
+
+  /// Runs one of the streams until a stop is requested or the device is gone; then returns within
+  /// 2 s.
+  /// @param use       of this camera
   /// @param on_frame  receives each frame of which at least 80 % of the packets arrived
-  void stream(const std::stop_token& stop, const std::function<void(const RawFrame&)>& on_frame);
+  void stream(Use use, const CameraStream& stream, const std::stop_token& stop,
+              const std::function<void(const RawFrame&)>& on_frame);
 
   PacketCounts packet_counts() const;
 
@@ -77,11 +109,10 @@ class Kinect {
   bool is_lost() const { return is_lost_; }
 
  private:
-  void start_depth();
-  bool count_packets(const ReceivedFrame& frame);
+  bool count_packets(const ReceivedFrame& frame, const PacketFormat& format);
   void log(const IsoPacket& packet);
 
-  std::mutex usb_;  // guards camera_ and commands_; held while a stream runs
+  std::atomic<bool> is_used_ = false;  // camera_ and commands_ are, by whoever has its `use`
   std::unique_ptr<UsbDevice> camera_;
   CameraCommands commands_;
   std::mutex motor_mutex_;            // guards motor_

@@ -8,7 +8,6 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t header_bytes = 12;
-constexpr unsigned reading_bits = 11;
 
 /// A packet takes at least one microframe of USB.
 constexpr auto microframe = std::chrono::microseconds(125);
@@ -17,6 +16,22 @@ constexpr auto microframe = std::chrono::microseconds(125);
 constexpr unsigned first_packet = 1;
 constexpr unsigned middle_packet = 2;
 constexpr unsigned last_packet = 5;
+
+/// @tparam reading_bits  known to the compiler, which halves the time
+template <unsigned reading_bits>
+void unpack(std::span<const std::uint8_t> bytes, std::span<std::uint16_t> readings) {
+  constexpr std::uint32_t mask = (1U << reading_bits) - 1;
+  std::uint32_t bits = 0;
+  unsigned held = 0;
+  auto byte = bytes.begin();
+  for (std::uint16_t& reading : readings) {
+    for (; held < reading_bits; held += 8) {
+      bits = bits << 8U | *byte++;
+    }
+    held -= reading_bits;
+    reading = static_cast<std::uint16_t>(bits >> held & mask);
+  }
+}
 
 }  // namespace
 
@@ -124,23 +139,19 @@ void PacketFrames::finish_frame() {
   doubtful_ = format_.packets();
 }
 
-void unpack_depth(const ReceivedFrame& frame, std::span<std::uint16_t> readings) {
+void unpack_readings(const ReceivedFrame& frame, const PacketFormat& format,
+                     std::span<std::uint16_t> readings) {
+  const std::size_t reading_bits = format.reading_bits;
   assert(readings.size() * reading_bits == 8 * frame.bytes.size());
-  std::uint32_t bits = 0;
-  unsigned held = 0;
-  auto byte = frame.bytes.begin();
-  for (std::uint16_t& reading : readings) {
-    for (; held < reading_bits; held += 8) {
-      bits = bits << 8U | *byte++;
-    }
-    held -= reading_bits;
-    reading = static_cast<std::uint16_t>(bits >> held & 0x7FFU);
+  if (reading_bits == depth_packets.reading_bits) {
+    unpack<depth_packets.reading_bits>(frame.bytes, readings);
+  } else {
+    unpack<infrared_packets.reading_bits>(frame.bytes, readings);
   }
   for (const int number : frame.lost) {
-    const std::size_t first_bit =
-        8 * static_cast<std::size_t>(number) * depth_packets.payload_bytes;
+    const std::size_t first_bit = 8 * static_cast<std::size_t>(number) * format.payload_bytes;
     const std::size_t end_bit =
-        std::min(first_bit + 8 * depth_packets.payload_bytes, readings.size() * reading_bits);
+        std::min(first_bit + 8 * format.payload_bytes, readings.size() * reading_bits);
     const std::size_t first = first_bit / reading_bits;
     const std::size_t end = (end_bit + reading_bits - 1) / reading_bits;
     std::ranges::fill(readings.subspan(first, end - first), lost_reading);

@@ -10,10 +10,11 @@
 
 namespace octurn {
 
-/// How the Kinect's camera cuts the frames of one of its streams into packets: each has a header
-/// of 12 bytes, then the frame's next bytes.
+/// How the Kinect's camera packs the readings of one of its streams, the first bit in front, and
+/// cuts its frames into packets: each has a header of 12 bytes, then the frame's next bytes.
 struct PacketFormat {
-  std::uint8_t stream = 0;  ///< the upper four bits of its headers' flags
+  std::uint8_t stream = 0;    ///< the upper four bits of its headers' flags
+  unsigned reading_bits = 0;  ///< 10 or 11
   std::size_t frame_bytes = 0;
   std::size_t payload_bytes = 0;  ///< of each packet but the last
 
@@ -23,8 +24,16 @@ struct PacketFormat {
 };
 
 /// Depth: 640 x 480 readings of 11 bits, in 242 packets.
-inline constexpr PacketFormat depth_packets{
-    .stream = 0x70, .frame_bytes = std::size_t{640} * 480 * 11 / 8, .payload_bytes = 1748};
+inline constexpr PacketFormat depth_packets{.stream = 0x70,
+                                            .reading_bits = 11,
+                                            .frame_bytes = std::size_t{640} * 480 * 11 / 8,
+                                            .payload_bytes = 1748};
+
+/// What the infrared camera sees: 640 x 488 readings of 10 bits, in 205 packets.
+inline constexpr PacketFormat infrared_packets{.stream = 0x80,
+                                               .reading_bits = 10,
+                                               .frame_bytes = std::size_t{640} * 488 * 10 / 8,
+                                               .payload_bytes = 1908};
 
 /// A frame as it arrived. Valid while it is handed over.
 struct ReceivedFrame {
@@ -67,12 +76,12 @@ class PacketFrames {
   Clock::time_point begin_ = {};
 };
 
-/// A reading whose packet was lost; no 11-bit reading has this value.
+/// A reading whose packet was lost; no reading of 11 bits has this value.
 inline constexpr std::uint16_t lost_reading = 0x800;
 
-/// Unpacks the 11-bit readings of a depth frame. Those of which a lost packet had any bit become
-/// `lost_reading`.
-/// @param readings  640 x 480
-void unpack_depth(const ReceivedFrame& frame, std::span<std::uint16_t> readings);
+/// Unpacks the readings of a frame. Those of which a lost packet had any bit become `lost_reading`.
+/// @param readings  all of a frame of that format
+void unpack_readings(const ReceivedFrame& frame, const PacketFormat& format,
+                     std::span<std::uint16_t> readings);
 
 }  // namespace octurn

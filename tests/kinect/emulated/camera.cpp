@@ -7,8 +7,6 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t header_bytes = 12;
-constexpr std::size_t packet_bytes = 1748;
-constexpr std::size_t frame_bytes = EmulatedCamera::pixels * 11 / 8;
 
 void put16(std::span<std::uint8_t> to, std::size_t at, std::uint16_t value) {
   to[at] = static_cast<std::uint8_t>(value & 0xFFU);
@@ -20,15 +18,16 @@ std::uint16_t get16(std::span<const std::uint8_t> from, std::size_t at) {
                                : std::uint16_t{0};
 }
 
-/// Packs readings into 11 bits each, the first in the most significant bits.
-std::vector<std::uint8_t> packed(std::span<const EmulatedCamera::Reading> readings) {
+/// Packs readings, the first in the most significant bits.
+std::vector<std::uint8_t> packed(std::span<const EmulatedCamera::Reading> readings,
+                                 unsigned reading_bits) {
   std::vector<std::uint8_t> bytes;
-  bytes.reserve(frame_bytes);
+  bytes.reserve(readings.size() * reading_bits / 8);
   std::uint32_t bits = 0;
   unsigned held = 0;
   for (const EmulatedCamera::Reading reading : readings) {
-    bits = bits << 11U | (reading & 0x7FFU);
-    for (held += 11; held >= 8;) {
+    bits = bits << reading_bits | (reading & ((1U << reading_bits) - 1));
+    for (held += reading_bits; held >= 8;) {
       held -= 8;
       bytes.push_back(static_cast<std::uint8_t>(bits >> held & 0xFFU));
     }
@@ -106,84 +105,111 @@ std::vector<std::uint8_t> EmulatedCamera::answer(std::uint16_t command,
 
 void EmulatedCamera::write_register(std::uint16_t address, std::uint16_t value) {
   registers_[address] = value;
-  if (address == 0x05 && value != 0) {
-    ++kinect_.video_starts;
+  if (address == 0x05) {
+    kinect_.video_starts += value != 0 ? 1 : 0;
+    // Infrared, 10 bits, 640 x 488, 30 Hz.
+    kinect_.infrared_on = value == 3 && registers_[0x19] == 0 && registers_[0x1A] == 1 &&
+                          registers_[0x1B] == 30 && infrared_.frames;
+    infrared_.start();
   }
   if (address == 0x06) {
     kinect_.depth_on = value == 2;
-    frame_ = -1;
-    microframe_ = 0;
+    depth_.start();
+  }
+  if (address == 0x105) {
+    kinect_.projector_cycles = value != 0;
   }
   kinect_.near_mode =
       registers_.contains(0x02EF) && registers_[0x02EF] == 0 && registers_[0x15] == 7;
 }
 
-int EmulatedCamera::next_packet(std::span<std::uint8_t> packet) {
-  if (!kinect_.depth_on || kinect_.silent) {
+void EmulatedCamera::Stream::start() {
+  frame = -1;
+  microframe = 0;
+}
+
+void EmulatedCamera::Stream::begin_frame(bool is_mirrored) {
+  ++frame;
+  frame_is_damaged = false;
+  const std::span<const Reading> seen = frames(frame);
+  std::vector<Reading> sent(seen.begin(), seen.end());
+  for (auto row = sent.begin(); is_mirrored && row != sent.end(); row += 640) {
+    std::reverse(row, row + 640);
+  }
+  packed = octurn::packed(sent, reading_bits);
+}
+
+/// Whether nobody has asked for infrared pictures that are not mirrored.
+bool EmulatedCamera::is_mirrored(const Stream& stream) const {
+  const auto mirrors = registers_.find(0x48);
+  return &stream == &infrared_ && (mirrors == registers_.end() || mirrors->second != 0);
+}
+
+int EmulatedCamera::next_packet(std::span<std::uint8_t> packet, int endpoint) {
+  const bool is_depth = endpoint == depth_endpoint;
+  Stream& stream = is_depth ? depth_ : infrared_;
+  if (!(is_depth ? kinect_.depth_on : kinect_.infrared_on) || kinect_.silent) {
     return 0;
   }
-  if (microframe_ == 0) {
-    begin_frame();
+  if (stream.microframe == 0) {
+    stream.begin_frame(is_mirrored(stream));
   }
-  const int number = microframe_;
-  microframe_ = (microframe_ + 1) % microframes_in_frame;
-  if (number >= packets_in_frame) {
+  const int number = stream.microframe;
+  const int packets = stream.packets_in_frame();
+  stream.microframe = (stream.microframe + 1) % microframes_in_frame;
+  if (number >= packets) {
     return 0;
   }
-  const bool is_last = number + 1 == packets_in_frame;
-  const auto flag = static_cast<std::uint8_t>(number == 0 ? 0x71 : is_last ? 0x75 : 0x72);
-  const std::array<std::uint8_t, header_bytes> header = {'R', 'B', 0, flag, 0, sequence_++};
-  std::size_t bytes = is_last ? frame_bytes % packet_bytes : packet_bytes;
-  if (frame_ % kinect_.loss_period == 0 && number == kinect_.cut_packet) {
+  const bool is_last = number + 1 == packets;
+  const auto flag = static_cast<std::uint8_t>(stream.flags | (number == 0 ? 1U
+                                                              : is_last   ? 5U
+                                                                          : 2U));
+  const std::array<std::uint8_t, header_bytes> header = {'R', 'B', 0, flag, 0, stream.sequence++};
+  const std::size_t begin = static_cast<std::size_t>(number) * stream.payload_bytes;
+  std::size_t bytes = std::min(stream.payload_bytes, stream.frame_bytes - begin);
+  if (stream.frame % kinect_.loss_period == 0 && number == kinect_.cut_packet) {
     bytes /= 2;
-    frame_is_damaged_ = true;
+    stream.frame_is_damaged = true;
   }
-  if (is_lost(number)) {
-    frame_is_damaged_ = true;
+  if (is_lost(stream, number)) {
+    stream.frame_is_damaged = true;
     bytes = 0;
   }
   if (is_last) {
     ++kinect_.frames_sent;
-    kinect_.frames_damaged += frame_is_damaged_ ? 1 : 0;
+    kinect_.frames_damaged += stream.frame_is_damaged ? 1 : 0;
   }
   if (bytes == 0 || packet.size() < header_bytes + bytes) {
     return 0;
   }
   std::ranges::copy(header, packet.begin());
-  std::memcpy(&packet[header_bytes], &packed_[static_cast<std::size_t>(number) * packet_bytes],
-              bytes);
+  std::memcpy(&packet[header_bytes], &stream.packed[begin], bytes);
   return static_cast<int>(header_bytes + bytes);
-}
-
-void EmulatedCamera::begin_frame() {
-  ++frame_;
-  frame_is_damaged_ = false;
-  packed_ = packed(frames_(frame_));
 }
 
 /// Whether a packet of this frame is among those that this frame or the previous one loses, or is
 /// lost by chance, in a burst or in a recording.
-bool EmulatedCamera::is_lost(int packet) {
-  constexpr int burst_period = 7283;  // a second has 7260: each burst hits frames elsewhere
-  const bool in_burst = ++packets_ % burst_period < kinect_.burst;
+bool EmulatedCamera::is_lost(Stream& stream, int packet) {
+  constexpr int burst_period = 7283;  // a second has 7260 of depth: bursts hit frames elsewhere
+  const bool in_burst = ++stream.packets % burst_period < kinect_.burst;
   if (in_burst || std::uniform_real_distribution()(random_) < kinect_.random_loss) {
     return true;
   }
-  const auto sent = static_cast<std::size_t>(frame_) * packets_in_frame;
-  if (!losses_.empty() && losses_[(sent + static_cast<std::size_t>(packet)) % losses_.size()]) {
+  const auto sent = static_cast<std::size_t>(stream.frame * stream.packets_in_frame() + packet);
+  if (!losses_.empty() && losses_[sent % losses_.size()]) {
     return true;
   }
   const auto loses = [this](int frame, int number) {
     return frame >= 0 && frame % kinect_.loss_period == 0 && number >= kinect_.first_lost &&
            number < kinect_.first_lost + kinect_.lost_packets;
   };
-  return loses(frame_, packet) || loses(frame_ - 1, packet + packets_in_frame);
+  return loses(stream.frame, packet) || loses(stream.frame - 1, packet + stream.packets_in_frame());
 }
 
-EmulatedCamera::Frames over_and_over(std::span<const EmulatedCamera::Reading> frames) {
-  return [frames](int frame) {
-    return frames.subspan(static_cast<std::size_t>(frame) * EmulatedCamera::pixels % frames.size(),
-                          EmulatedCamera::pixels);
+EmulatedCamera::Frames over_and_over(std::span<const EmulatedCamera::Reading> frames,
+                                     std::size_t pixels) {
+  return [frames, pixels](int frame) {
+    return frames.subspan(static_cast<std::size_t>(frame) * pixels % frames.size(), pixels);
   };
 }
 

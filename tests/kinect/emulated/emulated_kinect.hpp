@@ -13,7 +13,8 @@ enum class KinectModel { k1414, k1473, for_windows };
 /// device while a program streams. Every member is atomic and lock-free.
 ///
 /// The folder in the environment variable `OCTURN_EMULATED_KINECT` holds this state as `kinect`,
-/// and in `frames` the sequence of frames that it repeats, each of 640 x 480 16-bit readings.
+/// in `frames` the sequence of frames that it repeats, each of 640 x 480 16-bit readings, and in
+/// `infrared`, if it is there, that of its infrared pictures, each of 640 x 488.
 struct EmulatedKinect {
   std::atomic<bool> plugged = true;
   std::atomic<int> plugged_times = 1;  // handles opened before the last plugging stay dead
@@ -56,6 +57,8 @@ struct EmulatedKinect {
   std::atomic<int> stream_priority = 0;  // real-time, of the thread that takes the packets
   std::atomic<bool> near_mode = false;
   std::atomic<bool> depth_on = false;
+  std::atomic<bool> infrared_on = false;
+  std::atomic<bool> projector_cycles = true;  // goes off and on where it sees no dots
 };
 
 static_assert(std::atomic<double>::is_always_lock_free);

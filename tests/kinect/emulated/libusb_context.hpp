@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -36,15 +37,22 @@ struct libusb_context {
     explicit Bus(const std::filesystem::path& folder)
         : control(folder / "kinect"),
           frames(folder / "frames"),
+          infrared(std::filesystem::exists(folder / "infrared")
+                       ? std::make_unique<octurn::MappedFile>(folder / "infrared")
+                       : nullptr),
           losses(octurn::lost_packets(octurn::parse_usb_log(
               octurn::read_regular_file(folder / "usb", octurn::max_usb_log_bytes)
                   .value_or("octurn-usb 1\nend\n")))) {}
     octurn::MappedFile control;
     octurn::MappedFile frames;
+    std::unique_ptr<octurn::MappedFile> infrared;
     std::vector<bool> losses;
     octurn::EmulatedKinect& kinect = control.as<octurn::EmulatedKinect>();
     octurn::EmulatedCamera camera = octurn::EmulatedCamera(
-        kinect, octurn::over_and_over(frames.values<octurn::EmulatedCamera::Reading>()), losses);
+        kinect, octurn::over_and_over(frames.values<octurn::EmulatedCamera::Reading>()), losses,
+        infrared ? octurn::over_and_over(infrared->values<octurn::EmulatedCamera::Reading>(),
+                                         octurn::EmulatedCamera::infrared_pixels)
+                 : nullptr);
   };
 
   std::optional<Bus> bus = {};

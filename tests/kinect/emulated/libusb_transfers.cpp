@@ -1,4 +1,4 @@
-// The transfers of the libusb replacement, which deliver depth in real time.
+// The transfers of the libusb replacement, which deliver the camera's packets in real time.
 
 #include <libusb.h>
 #include <sched.h>
@@ -30,8 +30,7 @@ steady_clock::time_point due(const libusb_context& context) {
                              real * std::chrono::duration<double>(microframe));
 }
 
-/// Completes the oldest transfer: with depth packets on endpoint 0x82, with empty ones on others.
-/// @param waiting  not empty
+/// Completes the oldest transfer. @param waiting  not empty
 void complete(libusb_context& context, std::deque<libusb_transfer*>& waiting) {
   libusb_transfer* transfer = waiting.front();
   waiting.pop_front();
@@ -41,10 +40,8 @@ void complete(libusb_context& context, std::deque<libusb_transfer*>& waiting) {
   for (int i = 0; i < transfer->num_iso_packets; ++i) {
     libusb_iso_packet_descriptor& packet = transfer->iso_packet_desc[i];
     packet.status = LIBUSB_TRANSFER_COMPLETED;
-    packet.actual_length = transfer->endpoint == 0x82
-                               ? static_cast<unsigned>(context.bus->camera.next_packet(
-                                     std::span(buffer, packet.length)))
-                               : 0;
+    packet.actual_length = static_cast<unsigned>(context.bus->camera.next_packet(
+        std::span(buffer, packet.length), transfer->endpoint & 0x0F));
     buffer += packet.length;
   }
   transfer->callback(transfer);
@@ -55,6 +52,7 @@ void complete(libusb_context& context, std::deque<libusb_transfer*>& waiting) {
 /// @return whether it came too late
 bool complete_late(libusb_context& context) {
   using Microframes = std::chrono::duration<double, std::ratio<1, 8000>>;
+  const int endpoint = context.waiting.front()->endpoint & 0x0F;
   std::int64_t end = context.microframes;
   for (const libusb_transfer* transfer : context.waiting) {
     end += transfer->num_iso_packets;
@@ -70,7 +68,7 @@ bool complete_late(libusb_context& context) {
   }
   std::array<std::uint8_t, octurn::max_iso_packet_bytes> nowhere = {};
   for (std::int64_t i = 0; i < missed; ++i) {
-    context.bus->camera.next_packet(nowhere);
+    context.bus->camera.next_packet(nowhere, endpoint);
   }
   context.begin = steady_clock::now();
   context.microframes = 0;

@@ -172,7 +172,6 @@ std::optional<UsbipDevice::Clock::time_point> UsbipDevice::due() const {
 }
 
 bool UsbipDevice::complete(Clock::time_point now) {
-  constexpr std::uint32_t depth_endpoint = 2;
   const auto begin = Clock::now();
   const Transfer transfer = std::move(waiting_.front());
   waiting_.pop_front();
@@ -186,10 +185,8 @@ bool UsbipDevice::complete(Clock::time_point now) {
     // Packets' data are contiguous in the message, without the gaps of the transfer's buffer.
     const std::size_t end = message.size();
     message.resize(end + transfer.packet_bytes[i]);
-    const auto bytes =
-        transfer.endpoint == depth_endpoint
-            ? static_cast<std::size_t>(camera_.next_packet(std::span(message).subspan(end)))
-            : 0;
+    const auto bytes = static_cast<std::size_t>(
+        camera_.next_packet(std::span(message).subspan(end), static_cast<int>(transfer.endpoint)));
     message.resize(end + bytes);
     const auto descriptor = std::span(descriptors).subspan(i * packet_bytes, packet_bytes);
     put_word(descriptor, 0, offset);

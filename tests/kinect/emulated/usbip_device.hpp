@@ -38,8 +38,7 @@ class UsbipDevice {
   /// up to the tests.
   std::optional<Clock::time_point> due() const;
 
-  /// Completes that transfer: with depth packets on the depth endpoint, with empty ones on the
-  /// other.
+  /// Completes that transfer with its endpoint's packets.
   /// @return false if the peer closed
   bool complete(Clock::time_point now);
 

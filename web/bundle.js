@@ -7,7 +7,6 @@
 import {build} from 'esbuild';
 import {cp, mkdir, readFile, readdir, rm, writeFile} from 'node:fs/promises';
 import {basename, dirname, join, relative} from 'node:path';
-import {pathToFileURL} from 'node:url';
 import {gzipSync} from 'node:zlib';
 
 const [source, target, ...files] = process.argv.slice(2);
@@ -18,22 +17,7 @@ const plainScript = /<script src="([^"]+)"><\/script>/g;  // runs before the doc
 const preload = /^ *<link rel="modulepreload"[^>]*>\n/gm;
 const indentation = /^ +/gm;  // dropped from documents with a script, none of which has preformatted text
 const packed = /\.(html|css|js|json|svg|txt|webmanifest)$/;
-const {isLater} = await import(pathToFileURL(join(source, 'base/text_parts.js')));
 
-/** Splits each language into two files: the texts for the page's first view, and the rest. */
-const splitTexts = {name: 'texts', setup: ({onLoad, onResolve}) => {
-  onResolve({filter: /\?rest$/}, ({path}) => ({path, namespace: 'rest'}));
-  onLoad({filter: /\/texts\/\w+\.js$/}, async ({path}) => {
-    const {texts, said} = await import(pathToFileURL(path));
-    const first = Object.fromEntries(Object.entries(texts).filter(([key]) => !isLater(key)));
-    return {contents: `export const texts = ${JSON.stringify(first)}; export const said = ${JSON.stringify(said)};
-      export const rest = () => import(${JSON.stringify(`${path}?rest`)});`};
-  });
-  onLoad({filter: /./, namespace: 'rest'}, async ({path}) => {
-    const {texts} = await import(pathToFileURL(path.replace(/\?rest$/, '')));
-    return {contents: `export const texts = ${JSON.stringify(Object.fromEntries(Object.entries(texts).filter(([key]) => isLater(key))))};`};
-  });
-}};
 const workerUrl = /new URL\('([^']+)', import\.meta\.url\)/g;
 
 /** Bundles the worker of each `new Worker(new URL('FILE', import.meta.url))`. */
@@ -138,7 +122,7 @@ await Promise.all([...plainScripts].map((file) => cp(join(source, file), join(ta
 
 const entries = [...documents.values()].flatMap((text) => script.exec(text)?.[1] ?? []);
 const {metafile: {outputs}} = await build(
-    {...common, entryPoints: entries, splitting: true, plugins: [splitTexts, bundleWorkers]});
+    {...common, entryPoints: entries, splitting: true, plugins: [bundleWorkers]});
 for (const [file, text] of documents) {
   const folder = dirname(file);
   const entry = script.exec(text)?.[1];

@@ -15,7 +15,7 @@ import {cancel, end, pause, rename, resume, start} from './scan/scan_actions.js'
 import {prepareStage} from './scan/stage.js';
 import {screenOf} from './screen.js';
 import * as states from './state.js';
-import {awaitTexts, fillTexts, language} from './base/texts.js';
+import {fillTexts, language} from './base/texts.js';
 import {seeWarnings} from './scanner/warnings.js';
 
 /** Fetches the builds of the scan in view, if they are not known yet. @param {states.State} now */
@@ -23,7 +23,7 @@ async function missingBuilds(now) {
   if (!states.areBuildsStale(now)) {
     return null;
   }
-  const [page, requests] = await Promise.all([import('./scan/scan_page.js'), import('./api/api_builds.js'), awaitTexts()]);  // including the reasons of verdicts
+  const [page, requests] = await Promise.all([import('./scan/scan_page.js'), import('./api/api_builds.js')]);
   page.prepare();
   const scan = /** @type {string} */ (now.selected);
   return {scan, list: await requests.builds(scan)};

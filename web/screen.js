@@ -307,7 +307,7 @@ export function screenOf(state) {
       shows: has3D ? state.stage : 'camera',
       hasChoice: has3D,
       model: hasModel && chosen && shown?.model ? {...shown.model, url: pictureUrl(chosen, buildShown(state, chosen))} : null,
-      hasColours: Boolean(chosen?.has_colours),
+      paint: /** @type {const} */ (chosen?.has_colours ? 'colours' : chosen?.has_views ? 'views' : null),
       object: chosen?.id ?? '',
       places: details?.verdict?.reasons.find(({isShown}) => isShown)?.places ?? [],
       growing,

@@ -82,6 +82,8 @@ TEST_F(ScanByLaser, HasThePicturesAndTheModelInColour) {
   ASSERT_EQ(job.state, JobState::finished) << job.failure->detail;
   EXPECT_TRUE(job.builds.have_colours);
   EXPECT_TRUE(store_.get(job.id).builds.have_colours);
+  EXPECT_FALSE(job.builds.have_views);
+  EXPECT_FALSE(store_.get(job.id).builds.have_views);
   EXPECT_TRUE(has_colours(store_.folder(job.id), read_scan(store_.folder(job.id))));
 
   ASSERT_TRUE(scanner.colour_model(job, 0, Colours::pictures));

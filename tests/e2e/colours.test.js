@@ -96,8 +96,8 @@ async function lookAtColours(t, {url}, id) {
 
 test('a scan by laser line has the colours of what was scanned, in files and in the viewer', async (t) => {
   const scanner = await startScanner(t, {rig: ['--simulate-laser', '--simulate-speed', '30']});
-  const {id, state, has_colours, error} = await scan(scanner, {snapshots: 24, leaf_size_mm: 1});
-  assert.deepEqual([state, has_colours], ['finished', true], JSON.stringify(error));
+  const {id, state, has_colours, has_views, error} = await scan(scanner, {snapshots: 24, leaf_size_mm: 1});
+  assert.deepEqual([state, has_colours, has_views], ['finished', true, false], JSON.stringify(error));
   const get = (name) => fetch(`${scanner.url}api/v1/scans/${id}/${name}`);
   const fetched = async (name) => Buffer.from(await (await get(name)).arrayBuffer());
   const triangles = (await fetched('Scan.stl')).readUInt32LE(80);
@@ -130,8 +130,8 @@ test('a scan by laser line has the colours of what was scanned, in files and in 
 
 test('a scan without pictures has no colours, and says so', async (t) => {
   const scanner = await startScanner(t, {rig: ['--simulate', '--simulate-speed', '30']});
-  const {id, has_colours} = await scan(scanner, {snapshots: 8, filter: 'basic', leaf_size_mm: 4});
-  assert.equal(has_colours, false);
+  const {id, has_colours, has_views} = await scan(scanner, {snapshots: 8, filter: 'basic', leaf_size_mm: 4});
+  assert.deepEqual([has_colours, has_views], [false, true]);
   const refused = await fetch(`${scanner.url}api/v1/scans/${id}/Scan.glb?colour=true`);
   const {code, detail, hint} = await refused.json();
   assert.deepEqual([refused.status, code, detail], [400, 'bad-settings', 'this scan has no pictures in colour']);

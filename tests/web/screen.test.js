@@ -167,8 +167,12 @@ test('a scan whose pictures have colours is downloaded with them, too, but as ST
   assert.deepEqual(coloured.map(({url}) => url.split('/').at(-1)), ['3mf', 'ply', 'glb', 'obj'].map((ending) => `Scan.${ending}?colour=true`));
   assert.equal(coloured[1].name, 'PLY in colour');
   assert.equal(new Set(details.formats.map(({name}) => name)).size, details.formats.length);
-  assert.equal(stage.hasColours, true);
-  assert.equal(screenOf(looking(finished)).stage.hasColours, false);
+  assert.equal(stage.paint, 'colours');
+});
+
+test('a model is painted by its views only if its scan has depth images', () => {
+  const paintOf = (has_views) => screenOf(looking({...finished, has_views})).stage.paint;
+  assert.deepEqual([true, false].map(paintOf), ['views', null]);
 });
 
 test('a build that is looked at is downloaded in all formats, and not the scan\'s own model', () => {

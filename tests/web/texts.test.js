@@ -1,9 +1,7 @@
 import assert from 'node:assert/strict';
 import {readFile, readdir} from 'node:fs/promises';
-import {posix} from 'node:path';
 import {test} from 'node:test';
 
-import {isLater} from '../../web/base/text_parts.js';
 import {languageOf, languages, localeOf, text, translated} from '../../web/base/texts.js';
 
 const folder = new URL('../../web/', import.meta.url);
@@ -34,30 +32,6 @@ test('every key that the page names has a text', () => {
   assert.ok(keys.size > 300, `${keys.size} keys`);
   for (const begun of new Set(named.flatMap((file) => file.begun))) {
     assert.ok(Object.keys(english).some((key) => key.startsWith(begun)), begun);
-  }
-});
-
-/** A module and all modules that it imports, directly or not. */
-function comingWith(name, seen = new Set()) {
-  if (!seen.has(name) && written.has(name)) {
-    seen.add(name);
-    for (const [, other] of written.get(name).matchAll(/^import [^;]*? from '(\.{1,2}\/[^']+)';/gms)) {
-      comingWith(posix.join(posix.dirname(name), other), seen);
-    }
-  }
-  return [...seen];
-}
-
-test('what comes with the page names no text that comes later, but where its part of the page has come, too', () => {
-  const pieces = [...written.get('index.html').matchAll(/#include file="([^"]+)"/g)].map(([, name]) => name);
-  const first = [...comingWith('main.js'), ...pieces, 'index.html'];
-  assert.ok(first.length > 40 && pieces.length >= 5, first.join(' '));
-  // These belong to the library or the settings, or show the scanner's own words until the texts are loaded.
-  const ofOtherParts = new Set(['scan/bin.js', 'scanner/power.js', 'base/wording.js']);
-  for (const name of first.filter((file) => !ofOtherParts.has(file))) {
-    const {whole, quoted, begun} = namedIn(written.get(name));
-    const keys = [...whole, ...quoted, ...begun].filter((key) => key.includes('.') && isLater(key));
-    assert.deepEqual(keys, [], name);
   }
 });
 

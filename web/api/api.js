@@ -59,6 +59,7 @@ import {refusalText} from '../base/wording.js';
  * @property {{scan: string, registration: import('./api_poses.js').Registration | null} | null} [pose_of]  for a scan of a further pose
  * @property {import('./api_poses.js').Pose[]} [poses]  further poses of the same object
  * @property {boolean} [has_colours]  whether its pictures are coloured
+ * @property {boolean} [has_views]  whether its models tell how many snapshots saw a place
  * @property {{url: string, snapshots: number} | null} preview  mesh of the snapshots so far; null unless it runs
  *
  * @typedef {Object} Device

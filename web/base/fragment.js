@@ -1,6 +1,6 @@
 // Fragments of the page, fetched when they are needed: HTML files without head and body.
 
-import {awaitTexts, fillTexts} from './texts.js';
+import {fillTexts} from './texts.js';
 
 const betweenAttempts = 2000;  // milliseconds between attempts to fetch a fragment
 
@@ -37,7 +37,7 @@ export async function fetchFragment(parent, file, handlers) {
     throw new Error(`${response.status}`);
   }
   const parsed = new DOMParser().parseFromString(await response.text(), 'text/html');
-  await Promise.all([awaitStyles(parsed), awaitTexts(), handlers]);
+  await Promise.all([awaitStyles(parsed), handlers]);
   fillTexts(parsed);
   parent.replaceChildren(...parsed.head.childNodes, ...parsed.body.childNodes);
 }

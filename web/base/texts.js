@@ -44,16 +44,11 @@ const preferred = isInBrowser ? navigator.languages : ['en-US'];
 export const language = languageOf(isInBrowser ? chosenLanguage() : null, preferred);
 export const locale = localeOf(language, preferred);
 
-/** @type {{texts: Texts, said: Record<string, string>, rest?: () => Promise<{texts: Texts}>}} rest: loads the texts that a bundled language file leaves out */
-const {texts, said, rest} = await files[language]();
+/** @type {{texts: Texts, said: Record<string, string>}} */
+const {texts, said} = await files[language]();
 const plurals = new Intl.PluralRules(locale);
 const plain = new Intl.NumberFormat(locale, {maximumFractionDigits: 1});
 const exact = new Intl.NumberFormat(locale, {maximumFractionDigits: 6, useGrouping: false});
-
-/** Fetches the texts that the page's first view does not need. */
-export async function awaitTexts() {
-  Object.assign(texts, (await rest?.())?.texts);
-}
 
 /** @param {number} value */
 export const number = (value) => plain.format(value);

@@ -59,11 +59,14 @@ function press(paint, isShown) {
  * Shows or hides the model's colours.
  * @param {Object} shown
  * @param {() => import('./viewer.js').Viewer | undefined} shown.viewer
- * @param {() => {url: string | null, paint: Paint}} shown.painted  the STL of the shown model
+ * @param {() => {url: string | null, paint: Paint | null}} shown.painted  the STL of the shown model
  * @param {(words: string) => void} shown.say
  */
 export async function togglePaint({viewer, painted, say}) {
   const {url, paint} = painted();
+  if (paint === null) {
+    return;  // its button is hidden
+  }
   press(paint, !isPressed(paint));
   if (!isPressed(paint) || url === null) {
     viewer()?.paint(null);

@@ -62,7 +62,7 @@ function put(mesh, isFirst, isCoarse = false) {
   show(element('filled'), mesh.filled !== null);
   viewer?.show(mesh, {isFirst, isGrowing: Boolean(due?.growing), isCoarse});
   standUp();
-  offerPaints(due?.model?.url ?? null, due?.hasColours ? 'colours' : 'views');
+  offerPaints(due?.model?.url ?? null, due?.paint ?? null);
   if (isFirst) {
     viewer?.turn(!isStill);
   }

@@ -14,7 +14,7 @@ let viewer = () => undefined;
 let measuring = null;
 /** @type {'upright' | 'waiting' | 'laid'} waiting: for the side to lay the model on */
 let lying = 'upright';
-/** @type {{url: string | null, paint: Paint}} the STL of the model that can be painted */
+/** @type {{url: string | null, paint: Paint | null}} the STL of the model that can be painted */
 let painted = {url: null, paint: 'colours'};
 
 /** @param {string} words  shown on the picture; empty: none */
@@ -66,7 +66,7 @@ function setCut(isCut) {
 
 /**
  * Offers colours for the shown model, which is drawn in clay at first.
- * @param {string | null} url  of its STL; null: it has none @param {Paint} paint  which it has
+ * @param {string | null} url  of its STL; null: it has none @param {Paint | null} paint  which it has
  */
 export function offerPaints(url, paint) {
   painted = {url, paint};

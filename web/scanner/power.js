@@ -43,5 +43,5 @@ export async function preparePower() {
   element('messages').addEventListener('toggle', showMessages);
   const isAppliance = Boolean((await status().catch(() => null))?.appliance);
   show(element('power-actions'), isAppliance);
-  show(element('power-about'), isAppliance);
+  show(element('power-head'), isAppliance);
 }

@@ -135,11 +135,12 @@ export function makeField(key, stored, onReset) {
   help.id = `${id}-help`;
   editor.input.setAttribute('aria-describedby', `${help.id} ${complaint.id}`);
   setText(label, nameOf(key));
-  if (schema['x-unit']) {
-    const unit = document.createElement('span');
-    unit.className = 'muted';
-    unit.textContent = ` ${translated(schema['x-unit'])}`;
-    label.append(unit);
+  const unit = translated(schema['x-unit'] ?? '');
+  if (unit.toLowerCase() !== nameOf(key).toLowerCase()) {  // the page's address is measured in nothing else
+    const span = document.createElement('span');
+    span.className = 'muted';
+    span.textContent = unit && ` ${unit}`;
+    label.append(span);
   }
   setText(help, schema.minItems ? '' : helpOf(key, schema));
   root.dataset.setting = key;

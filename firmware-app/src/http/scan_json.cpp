@@ -58,7 +58,8 @@ json to_json(const Job& job) {
           {"model", model != nullptr ? with_url(*model, path_to(job.id) + "/Scan.stl") : json()},
           {"build", find_build(job, job.builds.chosen) != nullptr ? job.builds.chosen : 0},
           {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()},
-          {"has_colours", job.builds.have_colours}};
+          {"has_colours", job.builds.have_colours},
+          {"has_views", job.builds.have_views}};
 }
 
 json to_json(const Job& job, const Build& build) {

@@ -5,7 +5,6 @@
 #include <chrono>
 #include <cmath>
 #include <future>
-#include <limits>
 #include <memory>
 #include <numbers>
 #include <utility>
@@ -25,6 +24,7 @@
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
+#include "run/preview_solves.hpp"
 #include "store/checked_snapshots.hpp"
 #include "store/stored_scan.hpp"
 #include "turntable/real_time.hpp"
@@ -35,9 +35,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 
 constexpr auto wait_interval = std::chrono::milliseconds(500);
-// Of a turn, before the pose is solved for the preview: a quarter of a turn determines the axis.
-constexpr double preview_share = 1.0 / 3;
-constexpr double preview_stops = 6;
 
 /// Rounds an angle as scan.json does, in degrees: a later build from the folder has the same bytes.
 double stored_angle(double angle) { return radians_from_degrees(degrees_from_radians(angle)); }
@@ -55,7 +52,8 @@ class Run {
         scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder)
                                                             : scan_of_rig(rig, settings)),
         reconstruction_(options_of_scan(scan_, settings, limits)),
-        check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots)) {}
+        check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots)),
+        preview_solves_(settings.snapshots) {}
 
   bool has_all_snapshots() const { return done() == settings_.snapshots; }
   /// @return false if stopped first; so do `take_depth` and `take_lines`
@@ -90,8 +88,7 @@ class Run {
   FittingReconstruction reconstruction_;
   PoseChecks check_;  // of the snapshots added to the reconstruction
   int added_ = 0;     // snapshots added to the reconstruction
-  /// Snapshots after which the pose may be solved for the preview.
-  int solves_after_ = 0;
+  PreviewSolves preview_solves_;
   std::optional<SolvedPose> preview_pose_;  // until `calibrate`, in place of the configured one
   std::future<void> adding_;  // at most one: joined before the next begins, and on every way out
   EarlyModel early_;          // with the configured pose, while another is solved
@@ -150,7 +147,7 @@ bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
 /// Adds the stored snapshots of a resumed scan, in their order, while the platform turns.
 void Run::resume() {
   expect_same_rig(scan_, settings_, rig_);
-  solves_after_ = done();
+  preview_solves_.resume_after(done());
   if (!scan_.laser) {
     const SnapshotSource stored = checked();
     first_readings_ = readings_in(stored.read(0).frame);
@@ -178,10 +175,13 @@ Scan Run::shown(Scan scan) const {
 /// Solves the pose from a part of the turn. With a wrong one, views that disagree carve thin parts
 /// away before one's eyes. The model is built again with the pose from the whole turn.
 void Run::solve_for_preview(const Scan& so_far) {
-  solves_after_ = std::numeric_limits<int>::max();  // once is enough
+  preview_solves_.take(static_cast<int>(so_far.shots.size()));
   const int threads = reconstruction_.options().threads;
   const ScanSolution solution =
       solve_scan(folder_, so_far, readable_snapshots(folder_, so_far, stop_), threads, stop_);
+  if (solution.report.accepted) {
+    preview_solves_.end();
+  }
   if (solution.replaces_told) {
     preview_pose_ = solution.solved;
     reconstruction_.start_again();
@@ -264,10 +264,8 @@ void Run::add(Add add_to) {
   }
   added_ = done();
   const bool is_preview = done() < settings_.snapshots;  // else the model follows
-  // While a device fails, attempts follow each other: none solves before it has taken a stop.
-  const bool solves = is_preview && done() > solves_after_ && !scan_.laser && !scan_.solved &&
-                      settings_.pose != PoseSource::configured &&
-                      done() >= std::max(preview_share * settings_.snapshots, preview_stops);
+  const bool solves = preview_solves_.are_due(done()) && !scan_.laser && !scan_.solved &&
+                      settings_.pose != PoseSource::configured;
   adding_ = std::async(std::launch::async, [=, so_far = scan_, this, add = std::move(add_to)] {
     add(so_far);
     if (solves) {

@@ -436,6 +436,7 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
   if (is_stop_done && snapshots_done == 1 && rig_.laser() != nullptr) {
     const std::filesystem::path folder = ports_.store.folder(job_.id);
     job_.builds.have_colours = has_colours(folder, read_scan(folder));
+    job_.builds.have_views = false;
   }
   if (phase == Phase::rebuilding) {
     rebuild_started_ = now;

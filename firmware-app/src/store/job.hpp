@@ -122,6 +122,7 @@ struct JobBuilds {
   std::vector<Build> all = {};  ///< in order of their numbers
   int chosen = 0;               ///< number of the build whose model is shown; 0: the scan's own
   bool have_colours = false;    ///< models can get colours: laser-line pictures have them
+  bool have_views = true;       ///< models can tell how many depth images saw a place: not by laser
 };
 
 /// A person's name and notes for a scan; empty if there are none.

@@ -49,7 +49,9 @@ std::optional<PoseOf> pose_of_from(const std::optional<JsonValue>& object) {
 double in_clock_range(double seconds) { return std::clamp(seconds, 0.0, max_seconds); }
 
 /// False without the key, which earlier versions did not write.
-bool flag_in(const std::optional<JsonValue>& flag) { return flag && flag->flag(); }
+bool flag_in(const std::optional<JsonValue>& flag, bool otherwise) {
+  return flag ? flag->flag() : otherwise;
+}
 
 std::optional<Model> model_from(const std::optional<JsonValue>& object) {
   return !object || object->json().is_null() ? std::nullopt : std::optional(to_model(*object));
@@ -75,7 +77,8 @@ json to_job_json(const Job& job) {
               {"model", nullptr},
               {"build", job.builds.chosen},
               {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()},
-              {"has_colours", job.builds.have_colours}};
+              {"has_colours", job.builds.have_colours},
+              {"has_views", job.builds.have_views}};
   if (job.failure) {
     object["error"] = to_json(*job.failure);
   }
@@ -118,7 +121,8 @@ Job to_job(const json& object) {
           .calibration = calibration_from(keys.value("calibration")),
           .model = model_from(keys.value("model")),
           .builds = {.chosen = static_cast<int>(number_or_zero(keys, "build", max_int)),
-                     .have_colours = flag_in(keys.value("has_colours"))},
+                     .have_colours = flag_in(keys.value("has_colours"), false),
+                     .have_views = flag_in(keys.value("has_views"), true)},
           .pose_of = pose_of_from(keys.value("pose_of"))};
 }
 

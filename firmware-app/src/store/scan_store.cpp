@@ -205,6 +205,7 @@ Job to_waiting(Job job, const fs::path& folder, const Scan& scan) {
   job.builds = {};
   job.pose_of.reset();
   job.builds.have_colours = has_colours(folder, scan);
+  job.builds.have_views = !scan.laser;
   return job;
 }
 

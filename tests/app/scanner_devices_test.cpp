@@ -6,6 +6,7 @@
 
 #include "app/scanner_fixture.hpp"
 #include "app/wrapped_sensor.hpp"
+#include "octurn/units.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
@@ -105,6 +106,23 @@ TEST_F(ScannerTest, TakesStopsAgainToWhichAWeakMotorLostSteps) {
   const JobTimes stored = store_.find(job.id)->times;
   EXPECT_EQ(stored.slips, job.times.slips);
   EXPECT_NEAR(stored.settling.count(), job.times.settling.count(), 1e-3);
+}
+
+TEST_F(ScannerTest, DoesNotTakeAWrongPoseForLostSteps) {
+  RigOptions options = rig();
+  options.load = PlatformLoad{};
+  Scanner scanner(options, {}, store_);
+  ScanSettings settings;
+  settings.snapshots = 24;
+  settings.filter = DepthFilter::basic;
+  settings.pose = PoseSource::configured;
+  settings.platform_from_sensor =
+      Eigen::Translation3d(0.012, -0.016, 0) *
+      Eigen::AngleAxisd(radians_from_degrees(2.0), Eigen::Vector3d::UnitX()) *
+      settings.platform_from_sensor;
+  const Job job = scan(scanner, settings);
+  EXPECT_EQ(job.state, JobState::finished);
+  EXPECT_EQ(job.times.slips, 0);
 }
 
 TEST_F(ScannerTest, ShowsASensorsFaultWhateverItsCode) {

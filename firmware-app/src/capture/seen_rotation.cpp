@@ -184,17 +184,18 @@ Candidate best_rotation(const FramePair& frames, const AngleRange& range) {
   return best;
 }
 
-/// Refines a candidate in angle and translation by pattern search (Hooke and Jeeves 1961).
-Candidate refined(const FramePair& frames, Candidate best) {
-  PlanarMotion step{.deg = 2, .x = 0.004, .y = 0.004};
-  while (step.deg > min_step_deg) {
+/// Refines a candidate by pattern search (Hooke and Jeeves 1961).
+/// @param step  the first steps, of which those that are 0 stay so
+/// @param smallest  of the steps' angle and translation, as a share of the first
+Candidate refined(const FramePair& frames, Candidate best, PlanarMotion step, double smallest) {
+  for (double scale = 1; scale > smallest;) {
     bool is_better = false;
-    for (const double sign : {-1.0, 1.0}) {
+    for (const double by : {-scale, scale}) {
       for (const PlanarMotion& along :
            {PlanarMotion{.deg = step.deg}, PlanarMotion{.x = step.x}, PlanarMotion{.y = step.y}}) {
-        const PlanarMotion motion{.deg = best.motion.deg + sign * along.deg,
-                                  .x = best.motion.x + sign * along.x,
-                                  .y = best.motion.y + sign * along.y};
+        const PlanarMotion motion{.deg = best.motion.deg + by * along.deg,
+                                  .x = best.motion.x + by * along.x,
+                                  .y = best.motion.y + by * along.y};
         if (const double value = frames.disagreement(motion); value < best.disagreement) {
           best = {.motion = motion, .disagreement = value};
           is_better = true;
@@ -202,10 +203,24 @@ Candidate refined(const FramePair& frames, Candidate best) {
       }
     }
     if (!is_better) {
-      step = {.deg = step.deg / 2, .x = step.x / 2, .y = step.y / 2};
+      scale /= 2;
     }
   }
   return best;
+}
+
+/// The misfits of some rotations, each of which is refined before.
+template <typename Refine>
+std::vector<double> misfits(const FramePair& frames, std::span<const double> degs, Refine refine) {
+  std::vector<double> found;
+  if (frames.see_an_object()) {
+    for (const double deg : degs) {
+      const PlanarMotion motion{.deg = deg};
+      found.push_back(
+          refine({.motion = motion, .disagreement = frames.disagreement(motion)}).disagreement);
+    }
+  }
+  return found;
 }
 
 }  // namespace
@@ -216,7 +231,8 @@ std::optional<SeenRotation> seen_rotation(const PlatformLook& view, const DepthF
   if (!frames.see_an_object()) {
     return std::nullopt;
   }
-  const Candidate best = refined(frames, best_rotation(frames, range));
+  const Candidate best = refined(frames, best_rotation(frames, range),
+                                 {.deg = 2, .x = 0.004, .y = 0.004}, min_step_deg / 2);
   const auto beside = [&](double deg) {
     PlanarMotion motion = best.motion;
     motion.deg += deg;
@@ -229,14 +245,16 @@ std::optional<SeenRotation> seen_rotation(const PlatformLook& view, const DepthF
 
 std::vector<double> misfits_at(const PlatformLook& view, const DepthFrame& from,
                                const DepthFrame& to, std::span<const double> degs) {
+  return misfits(FramePair(view, from, to), degs,
+                 [](const Candidate& as_it_is) { return as_it_is; });
+}
+
+std::vector<double> misfits_about_any_axis(const PlatformLook& view, const DepthFrame& from,
+                                           const DepthFrame& to, std::span<const double> degs) {
   const FramePair frames(view, from, to);
-  std::vector<double> misfits;
-  if (frames.see_an_object()) {
-    for (const double deg : degs) {
-      misfits.push_back(frames.disagreement({.deg = deg}));
-    }
-  }
-  return misfits;
+  return misfits(frames, degs, [&](const Candidate& candidate) {
+    return refined(frames, candidate, {.x = 0.004, .y = 0.004}, 0.1);
+  });
 }
 
 }  // namespace octurn

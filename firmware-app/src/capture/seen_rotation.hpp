@@ -40,4 +40,9 @@ std::optional<SeenRotation> seen_rotation(const PlatformLook& view, const DepthF
 std::vector<double> misfits_at(const PlatformLook& view, const DepthFrame& from,
                                const DepthFrame& to, std::span<const double> degs);
 
+/// As `misfits_at`, for rotations about the upright axis that fits best: a pose that is some
+/// centimetres off then favours no rotation. Each takes some twenty times as long.
+std::vector<double> misfits_about_any_axis(const PlatformLook& view, const DepthFrame& from,
+                                           const DepthFrame& to, std::span<const double> degs);
+
 }  // namespace octurn

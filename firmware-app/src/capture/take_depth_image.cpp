@@ -141,29 +141,33 @@ struct TwoStops {
   double period_deg = 0;  // of the coils
 };
 
-/// Whether a turn by whole periods more or less explains the images clearly better.
-bool seem_to_slip(const TwoStops& stops) {
-  if (stops.period_deg < min_period_deg || std::abs(stops.turned_deg) > max_turn_deg) {
-    return false;
-  }
+/// The turns that the platform may have made: by up to `max_lost_periods` less or more than
+/// counted.
+std::vector<double> possible_degs(const TwoStops& stops) {
   std::vector<double> degs;
-  for (int periods = -max_lost_periods; periods <= max_lost_periods; ++periods) {
-    degs.push_back(stops.turned_deg - periods * stops.period_deg);
+  for (int lag = -max_lost_periods; lag <= max_lost_periods; ++lag) {
+    degs.push_back(stops.turned_deg - lag * stops.period_deg);
   }
-  const std::vector<double> misfits = misfits_at(stops.look, stops.last.image, stops.image, degs);
-  return !misfits.empty() && std::ranges::min(misfits) < clear_share * misfits[max_lost_periods];
+  return degs;
 }
 
-/// How many periods the platform lags behind its count since the last stop. Nothing if the images
-/// do not tell.
-std::optional<std::int64_t> seen_lag(const TwoStops& stops) {
-  const double range_deg = max_lost_periods * stops.period_deg + 1;
-  const auto seen = seen_rotation(stops.look, stops.last.image, stops.image,
-                                  {stops.turned_deg - range_deg, stops.turned_deg + range_deg});
-  if (!seen || seen->sharpness < min_sharpness) {
-    return std::nullopt;
+/// How many periods the platform lags behind its count since the last stop, by the misfits of the
+/// possible turns: 0 unless one explains the images clearly better than the count.
+std::int64_t clear_lag(const std::vector<double>& misfits) {
+  if (misfits.empty()) {
+    return 0;
   }
-  return std::llround((stops.turned_deg - seen->deg) / stops.period_deg);
+  const auto best = std::ranges::min_element(misfits);
+  return *best < clear_share * misfits[max_lost_periods]
+             ? std::distance(misfits.begin(), best) - max_lost_periods
+             : 0;
+}
+
+/// Whether the images may show lost steps. A wrong pose alone makes it seem so, too.
+bool seem_to_slip(const TwoStops& stops) {
+  return stops.period_deg >= min_period_deg && std::abs(stops.turned_deg) <= max_turn_deg &&
+         clear_lag(misfits_at(stops.look, stops.last.image, stops.image, possible_degs(stops))) !=
+             0;
 }
 
 /// Whether a stop has to be taken again, as the platform lost steps on the way to it. The position
@@ -184,11 +188,12 @@ bool has_slipped(Rig& rig, const PlatformLook& look, const DepthFrame& image) {
   if (!turntable.may_have_lost_steps() && !seem_to_slip(stops)) {
     return false;
   }
-  const auto periods = seen_lag(stops);
-  if (!periods || *periods == 0) {
+  const std::int64_t periods = clear_lag(
+      misfits_about_any_axis(stops.look, stops.last.image, stops.image, possible_degs(stops)));
+  if (periods == 0) {
     return false;
   }
-  const std::int64_t steps = *periods * turntable.steps_per_period();
+  const std::int64_t steps = periods * turntable.steps_per_period();
   log::warning("turntable", "the motor lost " + std::to_string(steps) +
                                 " steps, as the picture shows: the stop is taken again, more "
                                 "slowly");

@@ -9,14 +9,19 @@
 
 #include "app/scanner_fixture.hpp"
 #include "app/simulated_laser_rig.hpp"
+#include "calibration/board_pdf.hpp"
+#include "calibration/optics_files.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/units.hpp"
 #include "run/scanner.hpp"
+#include "simulator/sensor_unit.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {
 namespace {
 
 constexpr double speed = 200;
+constexpr double square = metres_from_mm(board_square_mm);
 
 ScanSettings few_stops() {
   ScanSettings few;
@@ -76,7 +81,7 @@ class ScanLens : public ::testing::Test {
 
 TEST_F(ScanLens, IsFoundFromABoardKeptAndUsedByTheNextScan) {
   Scanner scanner(rig_.options(speed), {}, store_);
-  ASSERT_TRUE(scanner.look_at_board());
+  ASSERT_TRUE(scanner.look_at_board(square));
   const CalibrationRun run = ended(scanner);
   ASSERT_EQ(run.state, CalibrationRun::State::done) << (run.failure ? run.failure->detail
                                                         : run.lens  ? run.lens->reason
@@ -125,7 +130,7 @@ TEST_F(ScanLens, IsSolvedEarlyWhereSomebodySaysThatItIsEnough) {
   Scanner scanner(rig_.options(speed), {}, store_);
   EXPECT_FALSE(scanner.solve_lens());
   after_views(scanner, 2, [&] { EXPECT_TRUE(scanner.solve_lens()); });
-  ASSERT_TRUE(scanner.look_at_board());
+  ASSERT_TRUE(scanner.look_at_board(square));
   const CalibrationRun run = ended(scanner);
   EXPECT_EQ(run.state, CalibrationRun::State::refused);
   EXPECT_NE(run.lens->reason.find("at least 5"), std::string::npos) << run.lens->reason;
@@ -135,28 +140,40 @@ TEST_F(ScanLens, IsSolvedEarlyWhereSomebodySaysThatItIsEnough) {
 TEST_F(ScanLens, IsNotLookedForAnyMoreAfterACancel) {
   Scanner scanner(rig_.options(speed), {}, store_);
   after_views(scanner, 1, [&] {
-    EXPECT_FALSE(scanner.look_at_board()) << "one at a time";
+    EXPECT_FALSE(scanner.look_at_board(square)) << "one at a time";
     EXPECT_TRUE(scanner.cancel_calibration());
   });
-  ASSERT_TRUE(scanner.look_at_board());
+  ASSERT_TRUE(scanner.look_at_board(square));
   EXPECT_EQ(ended(scanner).state, CalibrationRun::State::cancelled);
 }
 
 TEST_F(ScanLens, SaysWhatFailsWhereTheCameraIsPulled) {
   Scanner scanner(rig_.options(speed), {}, store_);
   after_views(scanner, 1, [&] { rig_.is_unplugged = true; });
-  ASSERT_TRUE(scanner.look_at_board());
+  ASSERT_TRUE(scanner.look_at_board(square));
   const CalibrationRun run = ended(scanner);
   EXPECT_EQ(run.state, CalibrationRun::State::failed);
   EXPECT_EQ(run.failure->code, ErrorCode::sensor_lost);
 }
 
-TEST_F(ScanLens, IsThatOfACameraWithLasersAlone) {
-  Scanner scanner({.sensor_uri = "octurn-simulator://?speed=20", .speed = 20}, {}, store_);
-  ASSERT_TRUE(scanner.look_at_board());
+TEST_F(ScanLens, OfADepthSensorIsKeptWithTheScaleOfItsDepths) {
+  Scanner scanner({.sensor_uri = "octurn-simulator://?unit=1&speed=20", .speed = 20}, {}, store_);
+  ASSERT_TRUE(scanner.look_at_board(square));
   const CalibrationRun run = ended(scanner);
-  EXPECT_EQ(run.state, CalibrationRun::State::failed);
-  EXPECT_EQ(run.failure->code, ErrorCode::sensor_other);
+  ASSERT_EQ(run.state, CalibrationRun::State::done) << (run.failure ? run.failure->detail : "");
+  scanner.keep_lens();
+  const auto kept = optics_record(store_.data(), scanner.sensor_serial());
+  ASSERT_TRUE(kept);
+  EXPECT_EQ(kept->origin, OpticsOrigin::board);
+  const SensorOptics truth = optics_of_unit(1);
+  const SensorOptics& found = kept->optics.value;
+  EXPECT_NEAR(found.fx, truth.fx, 0.002 * truth.fx);
+  EXPECT_NEAR(found.cx, truth.cx, 1.5);
+  EXPECT_NEAR(found.cy, truth.cy, 1.5);
+  const auto corrected = [](const SensorOptics& optics) {
+    return optics.depth_scale / (1 / 0.6 + optics.depth_offset_per_m);
+  };
+  EXPECT_NEAR(corrected(found) / corrected(truth), 1, 0.002);
 }
 
 }  // namespace

@@ -1,10 +1,10 @@
+// The interface between the program and Octurn's Kinect driver: its URIs and its OpenNI2
+// properties.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
-
-// The interface between the program and Octurn's Kinect driver: its URIs and its OpenNI2
-// properties.
 
 namespace octurn {
 
@@ -38,5 +38,40 @@ inline constexpr std::uint16_t lost_depth = 65535;
 /// The grey level of a pixel of an infrared picture whose packet was lost. All others are at least
 /// 1.
 inline constexpr std::uint8_t lost_infrared = 0;
+
+/// What arrived of a sensor's stream over USB, since the sensor was opened.
+struct PacketCounts {
+  std::int64_t whole_frames = 0;
+  std::int64_t partial_frames = 0;  ///< delivered, although packets were lost
+  std::int64_t dropped_frames = 0;  ///< too many packets were lost
+  std::int64_t packets = 0;         ///< of all these frames
+  std::int64_t lost_packets = 0;    ///< of them
+
+  double lost_share() const {
+    return packets > 0 ? static_cast<double>(lost_packets) / static_cast<double>(packets) : 0;
+  }
+  bool operator==(const PacketCounts&) const = default;
+};
+
+/// What arrived between two counts.
+inline PacketCounts operator-(const PacketCounts& later, const PacketCounts& earlier) {
+  return {.whole_frames = later.whole_frames - earlier.whole_frames,
+          .partial_frames = later.partial_frames - earlier.partial_frames,
+          .dropped_frames = later.dropped_frames - earlier.dropped_frames,
+          .packets = later.packets - earlier.packets,
+          .lost_packets = later.lost_packets - earlier.lost_packets};
+}
+
+/// The share of packets that were lost between two counts; 0 where the sensor counts none.
+inline double lost_share(const std::optional<PacketCounts>& before,
+                         const std::optional<PacketCounts>& after) {
+  return before && after ? (*after - *before).lost_share() : 0;
+}
+
+/// A sensor's attitude against gravity, from its accelerometer.
+struct Tilt {
+  double pitch = 0;  ///< radians, positive when the sensor looks up
+  double roll = 0;   ///< radians, positive when the right side, seen from behind, is lower
+};
 
 }  // namespace octurn

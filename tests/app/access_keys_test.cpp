@@ -5,7 +5,6 @@
 #include <filesystem>
 #include <string>
 
-#include "http/key_login.hpp"
 #include "support/small_stack.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"

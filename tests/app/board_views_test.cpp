@@ -8,7 +8,7 @@
 #include <stop_token>
 
 #include "calibration/optics_files.hpp"
-#include "capture/depth_scale.hpp"
+#include "capture/scan_of_rig.hpp"
 #include "octurn/error.hpp"
 #include "rig/simulation.hpp"
 #include "sensor/wrapped_sensor.hpp"

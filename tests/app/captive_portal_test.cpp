@@ -1,9 +1,8 @@
-#include "http/captive_portal.hpp"
-
 #include <gtest/gtest.h>
 
 #include "app/response_header.hpp"
 #include "http/http_server.hpp"
+#include "http/same_origin.hpp"
 #include "support/http_client.hpp"
 #include "support/temporary_folder.hpp"
 

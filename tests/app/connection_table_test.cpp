@@ -1,9 +1,9 @@
-#include "http/connection_table.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <string>
+
+#include "http/connections.hpp"
 
 namespace octurn {
 namespace {

@@ -1,8 +1,8 @@
-#include "http/digest.hpp"
-
 #include <gtest/gtest.h>
 
 #include <string>
+
+#include "http/password_file.hpp"
 
 namespace octurn {
 namespace {

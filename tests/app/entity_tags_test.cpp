@@ -1,6 +1,6 @@
-#include "http/entity_tags.hpp"
-
 #include <gtest/gtest.h>
+
+#include "http/file_response.hpp"
 
 namespace octurn {
 namespace {

@@ -1,6 +1,6 @@
-#include "http/event_board.hpp"
-
 #include <gtest/gtest.h>
+
+#include "http/event_feed.hpp"
 
 namespace octurn {
 namespace {

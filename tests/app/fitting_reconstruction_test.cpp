@@ -1,11 +1,10 @@
-#include "build/fitting_reconstruction.hpp"
-
 #include <gtest/gtest.h>
 
 #include <optional>
 #include <span>
 
 #include "app/few_snapshots.hpp"
+#include "build/early_model.hpp"
 #include "octurn/model.hpp"
 #include "octurn/scan_folder.hpp"
 #include "run/run_scan.hpp"

@@ -1,6 +1,6 @@
-#include "store/kept_frames.hpp"
-
 #include <gtest/gtest.h>
+
+#include "build/merged_scan.hpp"
 
 namespace octurn {
 namespace {

@@ -1,5 +1,3 @@
-#include "turntable/loaded_motor.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,7 +7,8 @@
 
 #include "app/quick_motion.hpp"
 #include "octurn/units.hpp"
-#include "turntable/pulse_train.hpp"
+#include "turntable/motion.hpp"
+#include "turntable/simulated_turntable.hpp"
 #include "turntable/stepper_settings.hpp"
 
 namespace octurn {

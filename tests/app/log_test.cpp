@@ -9,7 +9,6 @@
 #include <string>
 
 #include "file_descriptor.hpp"
-#include "log_ring.hpp"
 
 namespace octurn {
 namespace {

@@ -1,10 +1,9 @@
-#include "doctor/machine_watch.hpp"
-
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <stdexcept>
 
+#include "doctor/machine_checks.hpp"
 #include "support/patience.hpp"
 
 namespace octurn {

@@ -1,10 +1,9 @@
-#include "doctor/measure_turn.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "app/simulated_frames.hpp"
+#include "doctor/turn_checks.hpp"
 #include "octurn/snapshot.hpp"
 #include "sensor/simulated_mechanism.hpp"
 #include "support/thrown_error.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "app/few_snapshots.hpp"
-#include "rig/misaligned_pose.hpp"
+#include "rig/nominal_pose.hpp"
 #include "rig/simulation.hpp"
 #include "run/run_scan.hpp"
 #include "sensor/depth_sensor.hpp"

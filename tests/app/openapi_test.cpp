@@ -12,7 +12,7 @@
 #include "octurn/file.hpp"
 #include "settings/field.hpp"
 #include "settings/scan_settings.hpp"
-#include "store/build_settings.hpp"
+#include "store/job.hpp"
 
 namespace octurn {
 namespace {

@@ -1,5 +1,3 @@
-#include "http/packed.hpp"
-
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <zlib.h>
@@ -8,6 +6,7 @@
 #include <fstream>
 
 #include "app/response_header.hpp"
+#include "http/file_response.hpp"
 #include "http/json_body.hpp"
 #include "support/temporary_folder.hpp"
 

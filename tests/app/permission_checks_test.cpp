@@ -1,11 +1,10 @@
-#include "doctor/permission_checks.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include <optional>
 #include <string>
 
+#include "doctor/machine_checks.hpp"
 #include "support/temporary_folder.hpp"
 #include "turntable/real_time.hpp"
 

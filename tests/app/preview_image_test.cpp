@@ -1,11 +1,11 @@
-#include "http/preview_image.hpp"
-
 #include <gtest/gtest.h>
 #include <spng.h>
 
 #include <cmath>
 #include <memory>
 #include <vector>
+
+#include "http/handlers/system.hpp"
 
 namespace octurn {
 namespace {

@@ -1,8 +1,8 @@
-#include "outgoing/print_server.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
+
+#include "outgoing/printer_uploads.hpp"
 
 namespace octurn {
 namespace {

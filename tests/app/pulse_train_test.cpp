@@ -1,5 +1,3 @@
-#include "turntable/pulse_train.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <vector>
 
 #include "app/quick_motion.hpp"
+#include "turntable/motion.hpp"
 
 namespace octurn {
 namespace {

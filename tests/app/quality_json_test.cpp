@@ -1,8 +1,8 @@
-#include "store/quality_json.hpp"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
+
+#include "store/job_json.hpp"
 
 namespace octurn {
 namespace {

@@ -1,10 +1,9 @@
-#include "camera/released_lines.hpp"
-
 #include <gtest/gtest.h>
 
 #include <fstream>
 #include <string>
 
+#include "camera/lasers.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-#include "http/exchange.hpp"
+#include "http/http_server.hpp"
 
 namespace octurn {
 

@@ -13,7 +13,7 @@
 #include "octurn/scan_folder.hpp"
 #include "octurn/sensor_map.hpp"
 #include "octurn/snapshot.hpp"
-#include "zip_reader.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 namespace {

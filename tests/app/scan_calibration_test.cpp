@@ -10,11 +10,11 @@
 #include <vector>
 
 #include "app/few_snapshots.hpp"
-#include "mesh/facet_file.hpp"
+#include "mesh/vertex_table.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/units.hpp"
-#include "rig/misaligned_pose.hpp"
+#include "rig/nominal_pose.hpp"
 #include "run/run_scan.hpp"
 #include "store/stored_scan.hpp"
 #include "support/temporary_folder.hpp"

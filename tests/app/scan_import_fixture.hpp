@@ -18,7 +18,7 @@
 #include "support/archive.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
-#include "zip_archive.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 

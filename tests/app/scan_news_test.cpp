@@ -1,6 +1,6 @@
-#include "http/scan_news.hpp"
-
 #include <gtest/gtest.h>
+
+#include "http/scan_view.hpp"
 
 namespace octurn {
 namespace {

@@ -5,10 +5,10 @@
 #include <thread>
 
 #include "app/scanner_fixture.hpp"
-#include "build/pose_points.hpp"
+#include "build/merged_scan.hpp"
 #include "octurn/file.hpp"
 #include "octurn/scan_folder.hpp"
-#include "store/build_file.hpp"
+#include "store/builds.hpp"
 #include "store/pose_choice.hpp"
 
 namespace octurn {

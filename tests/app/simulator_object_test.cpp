@@ -7,8 +7,6 @@
 #include <random>
 #include <set>
 
-#include "simulator/surface_net.hpp"
-
 namespace octurn {
 namespace {
 

@@ -8,7 +8,7 @@
 #include <optional>
 
 #include "app/simulated_frames.hpp"
-#include "simulator/object_pose.hpp"
+#include "simulator/placed_object.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "simulator/simulator_object.hpp"
 #include "turntable/simulated_turntable.hpp"

@@ -1,9 +1,9 @@
-#include "run/time_left.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
+
+#include "run/status_board.hpp"
 
 namespace octurn {
 namespace {

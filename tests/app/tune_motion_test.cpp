@@ -1,5 +1,3 @@
-#include "doctor/tune_motion.hpp"
-
 #include <gtest/gtest.h>
 
 #include "app/simulated_frames.hpp"

@@ -1,5 +1,3 @@
-#include "mesh/view_colours.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <numbers>
 #include <vector>
 
+#include "mesh/model_colours.hpp"
 #include "mesh/vertex_table.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/units.hpp"

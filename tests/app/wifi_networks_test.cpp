@@ -1,6 +1,6 @@
-#include "appliance/wifi_networks.hpp"
-
 #include <gtest/gtest.h>
+
+#include "appliance/wifi.hpp"
 
 namespace octurn {
 namespace {

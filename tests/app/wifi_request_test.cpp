@@ -1,9 +1,8 @@
-#include "appliance/wifi_request.hpp"
-
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "appliance/wifi.hpp"
 #include "support/thrown_error.hpp"
 
 namespace octurn {

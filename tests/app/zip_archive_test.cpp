@@ -1,8 +1,7 @@
-#include "zip_archive.hpp"
-
 #include <gtest/gtest.h>
 
 #include "support/zip.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 namespace {

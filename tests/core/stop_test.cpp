@@ -16,7 +16,7 @@
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/integrate.hpp"
 #include "tsdf/marching_cubes.hpp"
-#include "voxel/keep_components.hpp"
+#include "voxel/connected_components.hpp"
 
 namespace octurn {
 namespace {

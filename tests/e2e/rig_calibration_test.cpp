@@ -6,7 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "octurn/units.hpp"
-#include "rig/misaligned_pose.hpp"
+#include "rig/nominal_pose.hpp"
 #include "support/daemon.hpp"
 #include "support/wrong_pose.hpp"
 

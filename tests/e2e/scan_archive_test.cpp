@@ -15,7 +15,7 @@
 #include "support/patience.hpp"
 #include "support/room_scan.hpp"
 #include "support/temporary_folder.hpp"
-#include "zip_archive.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 namespace {

@@ -46,8 +46,8 @@ camera_module() {
   camera=firmware-app/src/camera
   compiled "$root/lib/libOcturnCamera.so" -shared "$libraries/libcamera.so.0.4" "$libraries/libcamera-base.so.0.4" \
     "$libraries/libturbojpeg.so.0" -- \
-    $camera/camera_defaults.cpp $camera/colour_picture.cpp $camera/completed_requests.cpp $camera/frame_rate.cpp $camera/grey_picture.cpp \
-    $camera/jpeg_picture.cpp $camera/libcamera_camera.cpp $camera/mapped_plane.cpp $camera/pixel_formats.cpp core/src/io/error.cpp
+    $camera/camera_defaults.cpp $camera/colour_picture.cpp $camera/frame_rate.cpp $camera/grey_picture.cpp \
+    $camera/jpeg_picture.cpp $camera/libcamera_camera.cpp $camera/pixel_formats.cpp core/src/io/error.cpp
 }
 
 # with_libraries FILE...: copies the shared libraries of these files.

@@ -12,7 +12,7 @@
 #include "octurn/png.hpp"
 #include "store/scan_archive.hpp"
 #include "support/temporary_folder.hpp"
-#include "zip_archive.hpp"
+#include "zip_file.hpp"
 
 // The way of an archive to a model. One that is taken has a scan whose pictures can be read, makes
 // models or says why not, and is taken again after it was packed again; any other is refused by an

@@ -7,8 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "appliance/wifi_networks.hpp"
-#include "appliance/wifi_request.hpp"
+#include "appliance/wifi.hpp"
 
 // For any table, the networks taken from it can be joined by a request, are unique, and are sorted
 // by decreasing signal.

@@ -14,7 +14,6 @@
 #include "kinect/emulated/camera.hpp"
 #include "kinect/plain_frames.hpp"
 #include "rig/kinect_device.hpp"
-#include "rig/packet_counts.hpp"
 #include "support/patience.hpp"
 
 namespace octurn {

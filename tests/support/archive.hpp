@@ -16,7 +16,7 @@
 #include "octurn/scan_folder.hpp"
 #include "store/scan_archive.hpp"
 #include "support/temporary_folder.hpp"
-#include "zip_archive.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "http/digest.hpp"
+#include "http/password_file.hpp"
 
 namespace octurn {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "support/temporary_folder.hpp"
-#include "zip_archive.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "bennett/marching_tetrahedra_cases.hpp"
+#include "bennett/marching_tetrahedra.hpp"
 #include "mesh/hash.hpp"
 #include "octurn/units.hpp"
 

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "calibrate/axis_solver.hpp"
-#include "calibrate/axis_start.hpp"
 #include "calibrate/optics_solver.hpp"
 #include "calibrate/platform_plane.hpp"
 #include "calibrate/read_turn.hpp"

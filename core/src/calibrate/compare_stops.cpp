@@ -5,7 +5,7 @@
 #include "calibrate/checked_stop.hpp"
 #include "calibrate/for_each_stop.hpp"
 #include "calibrate/median.hpp"
-#include "calibrate/stop_pairs.hpp"
+#include "calibrate/stop_residuals.hpp"
 #include "mesh/places.hpp"
 #include "octurn/units.hpp"
 

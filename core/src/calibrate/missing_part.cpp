@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "calibrate/seen_cells.hpp"
+#include "calibrate/checked_stop.hpp"
 #include "mesh/places.hpp"
 #include "mesh/surface_cells.hpp"
 

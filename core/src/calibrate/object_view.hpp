@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "calibrate/platform_plane.hpp"
-#include "depth/object_window.hpp"
 #include "depth/pinhole.hpp"
+#include "depth/seen_pixels.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "calibrate/normal_equations.hpp"
-#include "calibrate/platform_samples.hpp"
+#include "calibrate/platform_plane.hpp"
 #include "depth/pinhole.hpp"
 #include "octurn/sensor_map.hpp"
 #include "octurn/units.hpp"

@@ -6,6 +6,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "depth/depth_limits.hpp"
+#include "depth/pinhole.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -261,6 +264,60 @@ Eigen::Isometry3d level(const Eigen::Isometry3d& platform_from_sensor, const Pla
   // The plane's height in the levelled frame, at any of its points.
   levelled.translation().z() -= (levelled * (plane.normal * plane.offset)).z();
   return levelled;
+}
+
+PlatformSamples make_platform_samples(const Intrinsics& lens, std::size_t stops) {
+  PlatformSamples samples{
+      .columns = static_cast<std::size_t>((lens.width + platform_step - 1) / platform_step),
+      .rays = {},
+      .depths = std::vector<std::vector<float>>(stops)};
+  for (int v = 0; v < lens.height; v += platform_step) {
+    for (int u = 0; u < lens.width; u += platform_step) {
+      samples.rays.push_back(to_ray(lens, u, v));
+    }
+  }
+  return samples;
+}
+
+std::vector<float> sample_depths(const DepthFrame& frame, const Intrinsics& lens) {
+  check_size(frame, lens, "calibrate");
+  std::vector<float> depths;
+  for (int v = 0; v < frame.height; v += platform_step) {
+    for (int u = 0; u < frame.width; u += platform_step) {
+      const auto z = static_cast<float>(
+          frame.depth[static_cast<std::size_t>(v) * static_cast<std::size_t>(frame.width) +
+                      static_cast<std::size_t>(u)] *
+          lens.depth_unit);
+      depths.push_back(static_cast<double>(z) > nearest_z ? z : 0.0F);
+    }
+  }
+  return depths;
+}
+
+namespace {
+
+// A platform of 28 cm, 0.7 m away, has a thousand samples; a large object leaves a few hundred.
+constexpr std::size_t min_inliers = 200;
+constexpr double min_share = 0.3;
+
+}  // namespace
+
+std::optional<PlatformSurface> measure_platform_surface(
+    const DepthFrame& frame, const Intrinsics& intrinsics,
+    const Eigen::Isometry3d& platform_from_sensor) {
+  PlatformSamples samples = make_platform_samples(intrinsics, 1);
+  samples.depths.front() = sample_depths(frame, intrinsics);
+  const auto plane = fit_platform_plane(samples, platform_from_sensor);
+  if (!plane || plane->inliers < min_inliers || plane->inlier_share < min_share) {
+    return std::nullopt;
+  }
+  // On the plane normal . p = offset; with p = (0, 0, height) of the configured frame on the
+  // configured axis.
+  const Eigen::Vector3d normal = platform_from_sensor.linear() * plane->normal;
+  const double offset = plane->offset + normal.dot(platform_from_sensor.translation());
+  return PlatformSurface{.height = offset / normal.z(),
+                         .slope = -normal.head<2>() / normal.z(),
+                         .tilt = std::atan2(normal.head<2>().norm(), normal.z())};
 }
 
 }  // namespace octurn

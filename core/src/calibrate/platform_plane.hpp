@@ -1,9 +1,12 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <Eigen/Geometry>
 #include <cstddef>
 #include <optional>
 #include <vector>
+
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 
@@ -46,5 +49,15 @@ PlatformPlane refine_platform_plane(const PlatformSamples& samples,
 
 /// The pose of least rotation from the configured one in which the plane is z = 0.
 Eigen::Isometry3d level(const Eigen::Isometry3d& platform_from_sensor, const PlatformPlane& plane);
+
+/// Pixels between readings that the plane is fitted to.
+inline constexpr int platform_step = 4;
+
+/// A grid of every fourth pixel in both directions, with its rays and room for the depths of stops.
+PlatformSamples make_platform_samples(const Intrinsics& lens, std::size_t stops);
+
+/// The depths of a frame at that grid's pixels, metres along z; 0 is no reading.
+/// @throws std::invalid_argument  if the frame has another size than the intrinsics say
+std::vector<float> sample_depths(const DepthFrame& frame, const Intrinsics& lens);
 
 }  // namespace octurn

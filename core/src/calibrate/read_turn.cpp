@@ -6,7 +6,7 @@
 
 #include "calibrate/for_each_stop.hpp"
 #include "calibrate/object_view.hpp"
-#include "calibrate/platform_samples.hpp"
+#include "calibrate/platform_plane.hpp"
 
 namespace octurn {
 namespace {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "calibrate/axis_solver.hpp"
-#include "calibrate/axis_start.hpp"
 #include "calibrate/for_each_stop.hpp"
 #include "io/number_text.hpp"
 #include "octurn/units.hpp"

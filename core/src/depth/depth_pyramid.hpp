@@ -1,12 +1,19 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <span>
 #include <vector>
 
-#include "depth/depth_observation.hpp"
-
 namespace octurn {
+
+/// What one pixel of a conditioned depth image observes, in the sensor's optical frame, metres.
+struct DepthObservation {
+  std::array<float, 3> normal = {};  // of the surface's tangent plane, towards the sensor
+  float offset = 0;                  // signed distance to that plane is normal . point + offset
+  float weight = 0;                  // of the surface; 0: none was observed
+  float free_space_depth = 0;        // z up to which the ray is free; 0: unknown
+};
 
 /// Minima and maxima of depth over rectangles of pixels, by a mip pyramid: a query reads at most
 /// 3 x 3 texels.

@@ -4,7 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "io/laser_json.hpp"
+#include "io/sensor_json.hpp"
 #include "octurn/optics_json.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"

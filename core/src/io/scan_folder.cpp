@@ -6,7 +6,6 @@
 #include <system_error>
 #include <utility>
 
-#include "io/laser_json.hpp"
 #include "io/pose_json.hpp"
 #include "io/sensor_json.hpp"
 #include "octurn/error.hpp"

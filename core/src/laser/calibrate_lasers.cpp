@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "io/number_text.hpp"
-#include "laser/laser_lines.hpp"
+#include "laser/line_strip.hpp"
 #include "laser/rig_solver.hpp"
 #include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"

@@ -1,5 +1,11 @@
 #include "laser/laser_rig.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "laser/line_strip.hpp"
+
 namespace octurn {
 namespace {
 
@@ -64,6 +70,102 @@ void SeenPoint::add_row(const Vector3d& along, double factor, Eigen::VectorXd& r
   row.segment<3>(2) += factor * along;
   const auto first = pose_unknowns + plane_unknowns * static_cast<Eigen::Index>(laser_);
   row.segment<3>(first) += factor * along.dot(ray_) * depth_per_unit_;
+}
+
+namespace {
+
+using Eigen::Vector3f;
+
+constexpr float cell_side = 0.0025F;  // metres
+constexpr float max_distance = 0.0025F;
+constexpr float min_agreement = 0.7F;  // cosine between two normals
+
+using Cell = std::array<int, 3>;
+
+Cell to_cell(const Vector3f& point) {
+  const auto at = [&](int axis) { return static_cast<int>(std::floor(point[axis] / cell_side)); };
+  return {at(0), at(1), at(2)};
+}
+
+std::uint64_t to_key(const Cell& cell) {
+  constexpr int offset = 1 << 20;
+  const auto part = [](int at) { return static_cast<std::uint64_t>(at + offset) & 0x1fffffU; };
+  return part(cell[0]) | part(cell[1]) << 21U | part(cell[2]) << 42U;
+}
+
+}  // namespace
+
+LinePoints::LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser,
+                       double min_height) {
+  const std::vector<Shot>& shots = lines.scan().shots;
+  const auto placed = [&](std::size_t stop) -> PlacedLine {
+    return {.profile = lines.at(stop)[laser],
+            .laser = rig.lasers[laser],
+            .object_from_sensor = object_from_sensor(rig.platform_from_sensor, shots[stop].angle)};
+  };
+  for (std::size_t stop = 0; stop < shots.size(); ++stop) {
+    const PlacedLine next = placed((stop + 1) % shots.size());
+    const PlacedLine own = placed(stop);
+    add_stop(make_strip(own, nullptr, &next), stop, min_height,
+             own.object_from_sensor.translation().cast<float>());
+  }
+  cells_.reserve(points_.size());
+  for (std::uint32_t i = 0; i < points_.size(); ++i) {
+    cells_.push_back({.cell = to_key(to_cell(points_[i].point)), .point = i});
+  }
+  std::ranges::sort(cells_);
+}
+
+void LinePoints::add_stop(const LineStrip& strip, std::size_t stop, double min_height,
+                          const Vector3f& camera) {
+  std::vector<Vector3f> normals(strip.own_points, Vector3f::Zero());
+  for (const LineStrip::Triangle& triangle : strip.to_next) {
+    const Vector3f& a = strip.points[triangle[0]];
+    Vector3f normal = (strip.points[triangle[1]] - a).cross(strip.points[triangle[2]] - a);
+    if (normal.dot(camera - a) < 0) {
+      normal = -normal;
+    }
+    for (const std::uint32_t corner : triangle) {
+      if (corner < strip.own_points) {
+        normals[corner] += normal;
+      }
+    }
+  }
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const float length = normals[i].norm();
+    if (length > 0 && static_cast<double>(strip.points[i].z()) > min_height) {
+      points_.push_back({.point = strip.points[i],
+                         .normal = normals[i] / length,
+                         .stop = static_cast<std::uint32_t>(stop),
+                         .ray = static_cast<std::uint32_t>(i)});
+    }
+  }
+}
+
+const LinePoint* LinePoints::nearest(const Vector3f& point, const Vector3f& normal) const {
+  const Cell middle = to_cell(point);
+  std::uint32_t best = 0;
+  float best_square = max_distance * max_distance;
+  bool found = false;
+  // Neighbouring cells along X have consecutive keys: one search finds all three.
+  for (int i = 0; i < 9; ++i) {
+    const Cell cell{middle[0] - 1, middle[1] + i % 3 - 1, middle[2] + i / 3 - 1};
+    const std::uint64_t last = to_key({middle[0] + 1, cell[1], cell[2]});
+    for (auto at = std::ranges::lower_bound(cells_, to_key(cell), {}, &CellEntry::cell);
+         at != cells_.end() && at->cell <= last; ++at) {
+      const LinePoint& other = points_[at->point];
+      const float square = (other.point - point).squaredNorm();
+      // Ties go to the lower index, whatever the order of the cells is.
+      const bool nearer =
+          square < best_square || (found && square == best_square && at->point < best);
+      if (nearer && other.normal.dot(normal) > min_agreement) {
+        best = at->point;
+        best_square = square;
+        found = true;
+      }
+    }
+  }
+  return found ? &points_[best] : nullptr;
 }
 
 }  // namespace octurn

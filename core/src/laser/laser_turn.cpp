@@ -11,7 +11,7 @@
 #include "depth/depth_limits.hpp"
 #include "depth/pinhole.hpp"
 #include "laser/draw_triangle.hpp"
-#include "laser/laser_lines.hpp"
+#include "laser/line_strip.hpp"
 #include "octurn/register.hpp"
 #include "octurn/scan_folder.hpp"
 

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "laser/line_points.hpp"
+#include "laser/laser_rig.hpp"
 #include "parallel/fork_join.hpp"
 
 namespace octurn {

@@ -4,8 +4,8 @@
 #include <stop_token>
 #include <vector>
 
-#include "laser/laser_lines.hpp"
 #include "laser/laser_rig.hpp"
+#include "laser/line_strip.hpp"
 
 namespace octurn {
 

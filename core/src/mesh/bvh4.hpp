@@ -10,7 +10,7 @@
 #include <span>
 #include <vector>
 
-#include "mesh/aabb.hpp"
+#include "mesh/vector3.hpp"
 #include "parallel/thread_team.hpp"
 
 namespace octurn {

@@ -2,14 +2,164 @@
 
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
+#include <bit>
 #include <cmath>
 #include <iterator>
 #include <numeric>
+#include <tuple>
 
-#include "mesh/strip_reach.hpp"
+#include "parallel/radix_sort.hpp"
 
 namespace octurn {
+namespace {
+
+/// Where the neighbours of a vertex lie.
+enum class Reach : char {
+  unknown,  ///< not determined yet
+  within,   ///< all in its own strip, and none beside a deferred collapse
+  beyond,
+};
+
+/// The vertices of a strip that its thread may collapse while other threads work on theirs.
+class StripReach {
+ public:
+  /// @param triangles  as the collapses change them
+  /// @param adjacency  of the vertices that were not collapsed since
+  /// @param reach      one per vertex, at first `unknown`; changed in this strip only
+  StripReach(std::span<const MeshTriangle> triangles, const TriangleAdjacency& adjacency,
+             const VertexStrips& strips, int strip, std::span<Reach> reach)
+      : triangles_(triangles),
+        adjacency_(adjacency),
+        strips_(strips),
+        strip_(strip),
+        reach_(reach) {}
+
+  bool has(std::uint32_t vertex) const { return strips_[vertex] == strip_; }
+
+  /// A collapse within the strip never joins a vertex to one beyond it: `within` stays true until a
+  /// collapse beside the vertex is deferred.
+  bool is_within(std::uint32_t vertex) {
+    if (!has(vertex)) {
+      return false;
+    }
+    if (reach_[vertex] == Reach::unknown) {
+      const bool is_within =
+          std::ranges::all_of(adjacency_.triangles_at(vertex), [&](std::uint32_t i) {
+            return std::ranges::all_of(triangles_[i],
+                                       [&](std::uint32_t corner) { return has(corner); });
+          });
+      reach_[vertex] = is_within ? Reach::within : Reach::beyond;
+    }
+    return reach_[vertex] == Reach::within;
+  }
+
+  /// A collapse at this vertex was deferred: later ones that depend on it must be, too.
+  void leave_around(std::uint32_t vertex) {
+    if (!has(vertex)) {
+      return;
+    }
+    for (const std::uint32_t i : adjacency_.triangles_at(vertex)) {
+      for (const std::uint32_t corner : triangles_[i]) {
+        if (has(corner)) {
+          reach_[corner] = Reach::beyond;
+        }
+      }
+    }
+  }
+
+ private:
+  std::span<const MeshTriangle> triangles_;
+  const TriangleAdjacency& adjacency_;
+  const VertexStrips& strips_;
+  int strip_;
+  std::span<Reach> reach_;
+};
+
+/// Moves each collapse to where its index is in the order, along one cycle after the other: a
+/// second list would be as long again.
+void reorder(std::vector<Collapse>& collapses, std::vector<KeyIndex>& order) {
+  for (std::uint32_t start = 0; start < order.size(); ++start) {
+    const Collapse first = collapses[start];
+    std::uint32_t to = start;
+    for (std::uint32_t from = order[to].index; from != start; from = order[to].index) {
+      collapses[to] = collapses[from];
+      order[to].index = to;
+      to = from;
+    }
+    collapses[to] = first;
+    order[to].index = to;
+  }
+}
+
+}  // namespace
+
+// By the upper half of the bits of their costs, which order as the costs do, as these are not
+// negative; then the few that have those bits in common by the whole key.
+void sort_by_cost(std::vector<Collapse>& collapses) {
+  std::vector<KeyIndex> keys;
+  keys.reserve(collapses.size());
+  for (const Collapse& collapse : collapses) {
+    keys.push_back(
+        {.key = static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(collapse.cost) >> 32),
+         .index = static_cast<std::uint32_t>(keys.size())});
+  }
+  radix_sort(keys, 32);
+  const auto whole_key = [&](const KeyIndex& key) {
+    const Collapse& collapse = collapses[key.index];
+    return std::tuple(collapse.cost, collapse.kept, collapse.removed);
+  };
+  for (auto first = keys.begin(); first != keys.end();) {
+    const auto end =
+        std::find_if(first, keys.end(), [&](const KeyIndex& key) { return key.key != first->key; });
+    if (end - first > 1) {
+      std::ranges::sort(first, end, {}, whole_key);
+    }
+    first = end;
+  }
+  reorder(collapses, keys);
+  const auto end =
+      std::unique(collapses.begin(), collapses.end(), [](const Collapse& a, const Collapse& b) {
+        return a.kept == b.kept && a.removed == b.removed;
+      });
+  collapses.erase(end, collapses.end());
+}
+
+namespace {
+
+constexpr std::size_t sampling = 16;  // vertices for each whose place counts
+
+/// The coordinates between the strips.
+std::vector<float> find_borders(std::span<const MeshVertex> vertices, std::size_t axis, int count) {
+  std::vector<float> places;
+  for (std::size_t i = 0; i < vertices.size(); i += sampling) {
+    places.push_back(vertices[i].position[axis]);
+  }
+  std::ranges::sort(places);
+  std::vector<float> borders;
+  for (int strip = 1; strip < count && !places.empty(); ++strip) {
+    borders.push_back(
+        places[places.size() * static_cast<std::size_t>(strip) / static_cast<std::size_t>(count)]);
+  }
+  return borders;
+}
+
+}  // namespace
+
+VertexStrips make_strips(std::span<const MeshVertex> vertices, std::size_t axis, int count,
+                         ThreadTeam& team) {
+  const std::vector<float> borders = find_borders(vertices, axis, count);
+  VertexStrips strips(vertices.size());
+  team.run([&](int thread) {
+    const auto [first, end] = team.share(vertices.size(), thread);
+    for (std::size_t i = first; i < end; ++i) {
+      const float place = vertices[i].position[axis];
+      strips[i] = static_cast<std::uint16_t>(
+          std::ranges::count_if(borders, [&](float border) { return border <= place; }));
+    }
+  });
+  return strips;
+}
+
 namespace {
 
 constexpr std::size_t prefetch_distance = 6;  // collapses

@@ -1,19 +1,40 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
-#include "mesh/collapse.hpp"
 #include "mesh/indexed_mesh.hpp"
+#include "mesh/mesh.hpp"
 #include "mesh/qem_simplify.hpp"
 #include "mesh/triangle_adjacency.hpp"
 #include "mesh/vector3.hpp"
-#include "mesh/vertex_strips.hpp"
 #include "parallel/thread_team.hpp"
 
 namespace octurn {
+
+/// A candidate edge collapse. The new vertex's position is not stored, as the list is long: it is
+/// computed again from the quadrics of both ends when the edge is collapsed.
+struct Collapse {
+  double cost = 0;  ///< mean square distance, mm^2
+  std::uint32_t kept = 0;
+  std::uint32_t removed = 0;
+};
+
+/// Sorts by cost and removes duplicates. Equal costs are sorted by vertex index, so that the result
+/// does not depend on the order before.
+void sort_by_cost(std::vector<Collapse>& collapses);
+
+/// For each vertex the index of its strip.
+using VertexStrips = std::vector<std::uint16_t>;
+
+/// Divides vertices into strips across an axis, about as many vertices in each.
+/// @param axis   0 to 2
+/// @param count  of strips, at least 1
+VertexStrips make_strips(std::span<const MeshVertex> vertices, std::size_t axis, int count,
+                         ThreadTeam& team = ThreadTeam::alone());
 
 /// One pass of edge collapse over all edges up to a maximum cost, the cheapest first. Changes the
 /// mesh that it refers to.

@@ -1,7 +1,5 @@
 #include "mesh/places.hpp"
 
-#include "mesh/spread_points.hpp"
-
 namespace octurn {
 
 void Places::add(const Eigen::Vector3d& point) {

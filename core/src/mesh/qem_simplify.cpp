@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "mesh/collapse_pass.hpp"
-#include "mesh/vertex_strips.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {

@@ -4,10 +4,10 @@
 #include <stop_token>
 #include <vector>
 
-#include "mesh/aabb.hpp"
 #include "mesh/indexed_mesh.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/qem_simplify.hpp"
+#include "mesh/vector3.hpp"
 #include "parallel/thread_team.hpp"
 
 namespace octurn {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "mesh/spread_points.hpp"
+#include "mesh/places.hpp"
 
 namespace octurn {
 namespace {

@@ -11,7 +11,7 @@
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 #include "parallel/fork_join.hpp"
-#include "register/contact.hpp"
+#include "register/reading_fit.hpp"
 #include "register/rigid_fit.hpp"
 #include "register/seen_turn.hpp"
 

@@ -3,7 +3,6 @@
 #include <stop_token>
 #include <vector>
 
-#include "register/free_space.hpp"
 #include "register/nearest_points.hpp"
 
 namespace octurn {

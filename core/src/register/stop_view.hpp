@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "depth/object_window.hpp"
+#include "depth/seen_pixels.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {

@@ -4,7 +4,7 @@
 #include <set>
 #include <vector>
 
-#include "tiles/tile_memory.hpp"
+#include "tiles/plan_tiles.hpp"
 
 namespace octurn {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "io/unnamed_file.hpp"
 #include "octurn/tiles.hpp"
-#include "tiles/tile_file.hpp"
+#include "tiles/tile_files.hpp"
 #include "tiles/tile_lattice.hpp"
 
 namespace octurn {

@@ -9,7 +9,7 @@
 
 #include "parallel/thread_team.hpp"
 #include "tsdf/tsdf_volume.hpp"
-#include "voxel/brick_map.hpp"
+#include "voxel/block_pool.hpp"
 
 namespace octurn {
 

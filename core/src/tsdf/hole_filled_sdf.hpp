@@ -9,7 +9,7 @@
 #include "parallel/thread_team.hpp"
 #include "tsdf/compact_tsdf.hpp"
 #include "tsdf/laplace_fill.hpp"
-#include "tsdf/platform_cut.hpp"
+#include "tsdf/voxel_grid.hpp"
 #include "voxel/voxel_mask.hpp"
 
 namespace octurn {

@@ -6,7 +6,7 @@
 #include "parallel/thread_team.hpp"
 #include "tsdf/compact_tsdf.hpp"
 #include "tsdf/laplace_fill.hpp"
-#include "tsdf/platform_cut.hpp"
+#include "tsdf/voxel_grid.hpp"
 
 namespace octurn {
 

@@ -5,7 +5,7 @@
 #include "mesh/mesh.hpp"
 #include "parallel/thread_team.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
-#include "tsdf/shell_field.hpp"
+#include "tsdf/shell.hpp"
 #include "voxel/voxel_mask.hpp"
 
 namespace octurn {

@@ -6,8 +6,8 @@
 
 #include "io/number_text.hpp"
 #include "octurn/error.hpp"
-#include "tsdf/solid_grid.hpp"
 #include "tsdf/tsdf_volume.hpp"
+#include "tsdf/voxel_grid.hpp"
 #include "voxel/block_pool.hpp"
 #include "voxel/checked_levels.hpp"
 #include "voxel/memory_limit.hpp"

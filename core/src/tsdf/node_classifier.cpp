@@ -4,7 +4,7 @@
 
 #include "parallel/vector_levels.hpp"
 #include "tsdf/integration_model.hpp"
-#include "tsdf/pixels.hpp"
+#include "tsdf/sensor_from_voxel.hpp"
 
 namespace octurn {
 namespace {

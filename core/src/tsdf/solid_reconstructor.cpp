@@ -16,13 +16,12 @@
 #include "tsdf/facet_stream.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/integrate.hpp"
-#include "tsdf/integrate_scan.hpp"
 #include "tsdf/integration_model.hpp"
 #include "tsdf/marching_cubes.hpp"
 #include "tsdf/memory_plan.hpp"
 #include "tsdf/observed_surface.hpp"
-#include "tsdf/solid_grid.hpp"
-#include "voxel/out_of_budget.hpp"
+#include "tsdf/voxel_grid.hpp"
+#include "voxel/memory_limit.hpp"
 
 namespace octurn {
 namespace {

@@ -5,7 +5,7 @@
 #include "octurn/reconstruct.hpp"
 #include "parallel/thread_team.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
-#include "voxel/keep_components.hpp"
+#include "voxel/connected_components.hpp"
 #include "voxel/voxel_mask.hpp"
 
 namespace octurn {

@@ -1,8 +1,6 @@
 #include "tsdf/tsdf_volume.hpp"
 
-#include <algorithm>
-
-#include "voxel/out_of_budget.hpp"
+#include "voxel/memory_limit.hpp"
 
 namespace octurn {
 

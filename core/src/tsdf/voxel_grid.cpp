@@ -1,8 +1,10 @@
 #include "tsdf/voxel_grid.hpp"
 
+#include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
 #include <cmath>
+
+#include "voxel/checked_levels.hpp"
 
 namespace octurn {
 namespace {
@@ -56,6 +58,59 @@ Box VoxelGrid::box() const {
   };
   return {.min = corner(low_),
           .max = corner({low_.x + size_.x, low_.y + size_.y, low_.z + size_.z})};
+}
+
+PlatformCut::PlatformCut(const VoxelGrid& grid, const Placement& placement) {
+  const Eigen::Isometry3d platform_from_object = placement.object_from_platform.inverse();
+  const Eigen::Vector3d up = platform_from_object.linear().row(2);
+  const double ticks_per_metre = VoxelGrid::ticks / grid.truncation();
+  double offset = platform_from_object.translation().z();
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double along = up[static_cast<Eigen::Index>(axis)];
+    step_[axis] = static_cast<float>(along * grid.voxel_side() * ticks_per_metre);
+    offset += along * grid.centre(0, axis);
+  }
+  offset_ = static_cast<float>(offset * ticks_per_metre);
+  square_ = step_[0] * step_[0] + step_[1] * step_[1] + step_[2] * step_[2];
+}
+
+std::pair<float, float> PlatformCut::heights(const Index3& low, const Index3& size) const {
+  float lowest = height(low);
+  float highest = lowest;
+  const std::array<int, 3> steps{size.x - 1, size.y - 1, size.z - 1};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float along = step_[axis] * static_cast<float>(steps[axis]);
+    lowest += std::min(along, 0.0F);
+    highest += std::max(along, 0.0F);
+  }
+  return {lowest, highest};
+}
+
+Index3 PlatformCut::raised(const Index3& voxel, float to_height) const {
+  const float steps = (to_height - height(voxel)) / square_;
+  const auto moved = [&](int at, std::size_t axis) {
+    return at + static_cast<int>(std::lround(step_[axis] * steps));
+  };
+  return {moved(voxel.x, 0), moved(voxel.y, 1), moved(voxel.z, 2)};
+}
+
+namespace {
+
+constexpr double min_truncation_voxels = 2.5;
+constexpr double foot_room = 1.5;  // truncations below the platform of the first of several poses
+
+}  // namespace
+
+VoxelGrid make_solid_grid(const ReconstructOptions& options) {
+  const int levels = checked_levels(options);
+  const double voxel_side = options.root_size / (1 << levels);
+  const double distance = std::max(options.solid.truncation, min_truncation_voxels * voxel_side);
+  // With several poses the surface of the foot may be seen from below: it needs room.
+  const int below = options.placements.empty()
+                        ? 0
+                        : static_cast<int>(std::ceil(foot_room * distance /
+                                                     (voxel_side * VoxelGrid::brick_side)));
+  return {options.root_size, levels, options.clip, distance, below};
 }
 
 }  // namespace octurn

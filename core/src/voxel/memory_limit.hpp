@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <exception>
 
 #include "io/number_text.hpp"
 #include "octurn/error.hpp"
@@ -17,5 +18,11 @@ inline void check_memory_limit(std::size_t limit, std::size_t min) {
                 {{"limit_mb", rounded_up_mb(limit)}, {"needed_mb", rounded_up_mb(min)}});
   }
 }
+
+/// Thrown when an octree or a TSDF volume would exceed its memory budget. It then still holds all
+/// earlier data, and some leaves or voxels of the triangle or snapshot that did not fit.
+struct OutOfBudget : std::exception {
+  const char* what() const noexcept override { return "the memory budget is spent"; }
+};
 
 }  // namespace octurn

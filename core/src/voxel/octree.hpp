@@ -8,7 +8,7 @@
 #include "octurn/reconstruct.hpp"
 #include "voxel/block_pool.hpp"
 #include "voxel/index3.hpp"
-#include "voxel/out_of_budget.hpp"
+#include "voxel/memory_limit.hpp"
 
 namespace octurn {
 

@@ -17,8 +17,7 @@
 #include "kinect/depth_table.hpp"
 #include "kinect/packet_frames.hpp"
 #include "kinect/usb_device.hpp"
-#include "rig/packet_counts.hpp"
-#include "rig/tilt.hpp"
+#include "rig/kinect_device.hpp"
 #include "rig/usb_log.hpp"
 
 namespace octurn {

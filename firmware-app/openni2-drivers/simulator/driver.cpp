@@ -7,7 +7,7 @@
 
 #include "depth_driver.hpp"
 #include "property.hpp"
-#include "rig/misaligned_pose.hpp"
+#include "rig/nominal_pose.hpp"
 #include "rig/simulation.hpp"
 #include "simulator/placed_object.hpp"
 #include "simulator/simulated_kinect.hpp"

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "octurn/snapshot.hpp"
-#include "simulator/white_noise.hpp"
+#include "simulator/noise_field.hpp"
 
 namespace octurn {
 

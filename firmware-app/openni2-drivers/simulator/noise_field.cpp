@@ -68,4 +68,22 @@ std::span<const std::int8_t> NoiseField::row(std::uint32_t part, int v) const {
   return std::span(values_).subspan(static_cast<std::size_t>(first), picture_width);
 }
 
+namespace {
+
+constexpr std::size_t noise_samples = std::size_t{1} << 17U;
+constexpr std::uint32_t terms = 12;  // of a sum of uniform numbers, whose variance is then 1
+
+}  // namespace
+
+WhiteNoise::WhiteNoise(std::uint32_t seed) : values_(noise_samples) {
+  for (std::size_t i = 0; i < noise_samples; ++i) {
+    float sum = -static_cast<float>(terms) / 2;
+    for (std::uint32_t term = 0; term < terms; ++term) {
+      const std::uint32_t drawn = mixed(seed, static_cast<std::uint32_t>(i) * terms + term);
+      sum += static_cast<float>(drawn) * 0x1p-32F;
+    }
+    values_[i] = sum;
+  }
+}
+
 }  // namespace octurn

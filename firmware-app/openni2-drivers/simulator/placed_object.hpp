@@ -33,4 +33,11 @@ class PlacedObject {
 /// @throws Error "mesh-malformed"
 Mesh told_object(const std::string& mesh_file);
 
+/// The pose of an object that a person has turned over: tipped about a horizontal axis, turned
+/// about the platform's axis, moved a little off its centre, and touching its surface.
+///
+/// @param object  in its initial pose, in the platform's frame at angle 0, metres
+/// @param pose    number of the pose; 0 is the initial one
+Eigen::Isometry3d platform_from_object(const Mesh& object, int pose);
+
 }  // namespace octurn

@@ -5,8 +5,8 @@
 
 #include "simulator/camera.hpp"
 #include "simulator/lens_distortion.hpp"
+#include "simulator/noise_field.hpp"
 #include "simulator/surface.hpp"
-#include "simulator/white_noise.hpp"
 
 namespace octurn {
 namespace {

@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "simulator/camera.hpp"
-#include "simulator/disparity.hpp"
 
 namespace octurn {
 namespace {
@@ -195,6 +194,20 @@ SimulatedKinect::Pixel SimulatedKinect::noisy(const Surface& surface, int u, int
           .spread = fresh * spread / NoiseField::one,
           .loss_threshold =
               (NoiseField::one * to_loss_threshold(surface) / noise_ - fixed * loss) / fresh};
+}
+
+std::vector<std::uint16_t> depth_of_readings() {
+  constexpr double nearest = 4500;    // tenths of a millimetre; real frames begin at 464 mm
+  constexpr double farthest = 65534;  // recordings lose the largest value, 65535
+  std::vector<std::uint16_t> depths(no_reading + 1, 0);
+  for (int reading = 0; reading < no_reading; ++reading) {
+    const double depth = 1e4 * static_cast<double>(readings_times_metres) /
+                         (static_cast<double>(reading_at_infinity) - reading);
+    if (depth >= nearest && depth <= farthest) {
+      depths[static_cast<std::size_t>(reading)] = static_cast<std::uint16_t>(std::lround(depth));
+    }
+  }
+  return depths;
 }
 
 }  // namespace octurn

@@ -5,7 +5,7 @@
 
 #include "octurn/png.hpp"
 #include "rig/laser_simulation.hpp"
-#include "simulator/white_noise.hpp"
+#include "simulator/noise_field.hpp"
 
 namespace octurn {
 

@@ -2,14 +2,104 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <fstream>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <system_error>
 #include <utility>
 
 #include "octurn/error.hpp"
+#include "octurn/json_object.hpp"
 
 namespace octurn {
+namespace {
+
+using std::chrono::sys_seconds;
+
+// A client whose time is outside this range has no valid clock either.
+constexpr sys_seconds earliest = std::chrono::sys_days(std::chrono::year(2026) / 1 / 1);
+constexpr sys_seconds latest = std::chrono::sys_days(std::chrono::year(2100) / 1 / 1);
+
+double to_number(sys_seconds time) { return static_cast<double>(time.time_since_epoch().count()); }
+
+}  // namespace
+
+sys_seconds clock_from(const nlohmann::json& body) {
+  JsonObject keys(body, ErrorCode::bad_settings, "");
+  const double seconds_since_1970 =
+      keys.at("unix_s").number(to_number(earliest), to_number(latest));
+  keys.refuse_unread();
+  return sys_seconds(
+      std::chrono::seconds(static_cast<std::chrono::seconds::rep>(seconds_since_1970)));
+}
+
+std::string to_text(const ControlRequest& request) {
+  if (const auto* time = std::get_if<sys_seconds>(&request)) {
+    return "clock " + std::to_string(time->time_since_epoch().count()) + "\n";
+  }
+  return std::get<PowerEnd>(request) == PowerEnd::restart ? "restart\n" : "off\n";
+}
+
+namespace {
+
+constexpr std::size_t max_host_name = 63;  // bytes of a label: RFC 1035, 2.3.4
+constexpr std::size_t max_zone_name = 64;
+
+bool is_host_character(char c) {
+  return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '-';
+}
+
+bool is_zone_character(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+         std::string_view("_+/-").find(c) != std::string_view::npos;
+}
+
+/// @throws Error "bad-settings"  if the value is not a valid host name
+std::string to_host_name(const JsonValue& value) {
+  std::string name = value.text();
+  std::ranges::transform(name, name.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (name.empty() || name.size() > max_host_name || name.starts_with('-') || name.ends_with('-') ||
+      !std::ranges::all_of(name, is_host_character)) {
+    value.refuse("letters, digits and hyphens between them, at most 63");
+  }
+  return name;
+}
+
+/// Checks the characters of a zone's name. Root checks whether the zone exists.
+std::string to_zone(const JsonValue& value) {
+  std::string zone = value.text();
+  if (zone.empty() || zone.size() > max_zone_name ||
+      !std::ranges::all_of(zone, is_zone_character)) {
+    value.refuse("a continent and a city, such as Europe/Berlin");
+  }
+  return zone;
+}
+
+}  // namespace
+
+MachineRequest machine_request_from(const nlohmann::json& body) {
+  JsonObject keys(body, ErrorCode::bad_settings, "");
+  MachineRequest request;
+  if (const auto name = keys.value("name")) {
+    request.name = to_host_name(*name);
+  }
+  if (const auto zone = keys.value("time_zone")) {
+    request.time_zone = to_zone(*zone);
+  }
+  keys.refuse_unread();
+  if (!request.name && !request.time_zone) {
+    throw Error(ErrorCode::bad_settings, "the body has neither name nor time_zone");
+  }
+  return request;
+}
+
+std::string to_text(const MachineRequest& request) {
+  return (request.name ? "name = " + *request.name + "\n" : "") +
+         (request.time_zone ? "time_zone = " + *request.time_zone + "\n" : "");
+}
+
 namespace {
 
 namespace fs = std::filesystem;

@@ -6,19 +6,51 @@
 #include <cstdint>
 #include <filesystem>
 #include <mutex>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
+#include <variant>
 #include <vector>
 
-#include "appliance/control_request.hpp"
-#include "appliance/machine_request.hpp"
-#include "appliance/wifi_networks.hpp"
-#include "appliance/wifi_request.hpp"
+#include "appliance/wifi.hpp"
 #include "octurn/file.hpp"
 
 namespace octurn {
+
+/// How the running system is to end.
+enum class PowerEnd { restart, off };
+
+/// A request that root carries out at once: restart, power off, or a new time of the clock.
+using ControlRequest = std::variant<PowerEnd, std::chrono::sys_seconds>;
+
+/// Reads the time of a body, `{"unix_s": 1795824000}`: Unix time in seconds, from 2026 to 2100.
+/// @throws Error "bad-settings"
+std::chrono::sys_seconds clock_from(const nlohmann::json& body);
+
+/// The line that root reads: "restart", "off" or "clock 1764012345".
+std::string to_text(const ControlRequest& request);
+
+/// The machine's name and time zone, as root reports them.
+struct MachineState {
+  std::string name = {};       ///< the page is at http://NAME.local
+  std::string time_zone = {};  ///< "Europe/Berlin"; empty: UTC
+  std::string error = {};      ///< what is wrong with the last request, or empty
+};
+
+/// A change of the name, the time zone or both.
+struct MachineRequest {
+  std::optional<std::string> name = {};
+  std::optional<std::string> time_zone = {};
+};
+
+/// Reads {"name", "time_zone"}.
+/// @throws Error "bad-settings"  that names the key; also if the body has neither
+MachineRequest machine_request_from(const nlohmann::json& body);
+
+/// The request as lines of octurn.txt.
+std::string to_text(const MachineRequest& request);
 
 /// State of an update of the image.
 struct UpdateState {

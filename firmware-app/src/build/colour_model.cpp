@@ -5,7 +5,6 @@
 #include <string>
 
 #include "mesh/model_colours.hpp"
-#include "mesh/view_colours.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/units.hpp"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "octurn/model.hpp"
-#include "store/model_scan.hpp"
+#include "store/stored_scan.hpp"
 
 namespace octurn {
 

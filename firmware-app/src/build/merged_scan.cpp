@@ -1,17 +1,89 @@
 #include "build/merged_scan.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <system_error>
 #include <utility>
 
-#include "build/solve_rigs.hpp"
+#include "calibration/solve_pose.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
+#include "octurn/units.hpp"
 #include "settings/scan_settings.hpp"
 #include "store/stored_scan.hpp"
 
 namespace octurn {
+namespace {
+
+bool any(std::uint16_t depth) { return depth != 0; }
+
+auto find_row(const DepthFrame& frame, int v) {
+  return frame.depth.begin() + static_cast<std::ptrdiff_t>(v) * frame.width;
+}
+
+}  // namespace
+
+KeptFrames::KeptFrames(std::size_t count, std::size_t max_bytes)
+    : windows_(count), room_(max_bytes) {}
+
+void KeptFrames::keep(std::size_t index, const DepthFrame& frame) {
+  int left = frame.width;
+  int right = 0;
+  int top = frame.height;
+  int bottom = 0;
+  for (int v = 0; v < frame.height; ++v) {
+    const auto begin = find_row(frame, v);
+    const auto end = begin + frame.width;
+    const auto first = std::find_if(begin, end, any);
+    if (first != end) {
+      const auto last = std::find_if(std::reverse_iterator(end), std::reverse_iterator(begin), any);
+      left = std::min(left, static_cast<int>(first - begin));
+      right = std::max(right, static_cast<int>(last.base() - begin));
+      top = std::min(top, v);
+      bottom = v + 1;
+    }
+  }
+  Window window{.width = frame.width, .height = frame.height};
+  if (bottom > 0) {
+    window.left = left;
+    window.top = top;
+    window.columns = right - left;
+  }
+  const std::size_t bytes = sizeof(std::uint16_t) * static_cast<std::size_t>(window.columns) *
+                            static_cast<std::size_t>(std::max(bottom - window.top, 0));
+  std::size_t room = room_;
+  do {
+    if (room < bytes) {
+      return;
+    }
+  } while (!room_.compare_exchange_weak(room, room - bytes));
+  window.depth.reserve(bytes / sizeof(std::uint16_t));
+  for (int v = window.top; v < bottom; ++v) {
+    const auto from = find_row(frame, v) + window.left;
+    window.depth.insert(window.depth.end(), from, from + window.columns);
+  }
+  windows_[index] = std::move(window);
+}
+
+std::optional<DepthFrame> KeptFrames::find(std::size_t index) const {
+  const auto& window = windows_[index];
+  if (!window) {
+    return std::nullopt;
+  }
+  DepthFrame frame{.width = window->width, .height = window->height, .depth = {}};
+  frame.depth.resize(static_cast<std::size_t>(frame.width) *
+                     static_cast<std::size_t>(frame.height));
+  auto to =
+      frame.depth.begin() + static_cast<std::ptrdiff_t>(window->top) * frame.width + window->left;
+  for (auto from = window->depth.begin(); from != window->depth.end();
+       from += window->columns, to += frame.width) {
+    std::copy_n(from, window->columns, to);
+  }
+  return frame;
+}
+
 namespace {
 
 namespace fs = std::filesystem;
@@ -287,6 +359,91 @@ void write_merged_scan(const fs::path& folder, const std::vector<StoredTurn>& tu
     fs::remove_all(temporary, ignored);
     throw;
   }
+}
+
+namespace {
+
+constexpr std::size_t max_kept_bytes = 16'000'000;  // cached depth images of all turns
+
+/// Turns with the same configured pose come from one rig if their solved poses agree. Then all get
+/// the mean, which is more accurate than each. Does nothing if a turn is registered already, or has
+/// solved optics, with which its pose belongs.
+void share_rig(std::vector<StoredTurn>& turns) {
+  std::vector<SolvedPose> solved;
+  const Eigen::Isometry3d& configured = turns.front().scan.platform_from_sensor;
+  for (const StoredTurn& turn : turns) {
+    const Scan& scan = turn.scan;
+    if (turn.object_from_platform || !scan.solved || scan.solved->optics ||
+        scan.platform_from_sensor.matrix() != configured.matrix()) {
+      return;
+    }
+    solved.push_back(*scan.solved);
+  }
+  if (const auto shared = shared_pose(solved)) {
+    for (StoredTurn& turn : turns) {
+      turn.scan.solved->platform_from_sensor = *shared;
+    }
+  }
+}
+
+/// Solves the pose of a turn's sensor, and keeps the depth images that this has read.
+void solve_rig(StoredTurn& turn, std::size_t kept_bytes, int threads, const std::stop_token& stop) {
+  const SnapshotSource stored = stored_snapshots(turn.folder, turn.scan, stop);
+  const auto kept = std::make_shared<KeptFrames>(stored.count, kept_bytes);
+  const SnapshotSource read_once{.count = stored.count, .read = [&](std::size_t index) {
+                                   Snapshot snapshot = stored.read(index);
+                                   kept->keep(index, snapshot.frame);
+                                   return snapshot;
+                                 }};
+  const ScanSolution solution = solve_scan(turn.folder, turn.scan, read_once, threads, stop);
+  take_solution(turn.scan, solution);
+  if (!solution.report.optics_differ) {  // else other depth images follow from the same files
+    turn.kept = kept;
+  }
+}
+
+}  // namespace
+
+void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop) {
+  if (std::ranges::all_of(turns, &StoredTurn::is_rig_solved)) {
+    return;
+  }
+  for (StoredTurn& turn : turns) {
+    if (!turn.is_rig_solved && !turn.scan.solved && !turn.object_from_platform) {
+      solve_rig(turn, max_kept_bytes / turns.size(), threads, stop);
+    }
+    turn.is_rig_solved = true;
+  }
+  if (!turns.front().scan.laser) {  // planes belong to their turn's pose
+    share_rig(turns);
+  }
+}
+
+namespace {
+
+using nlohmann::json;
+
+void append(json& list, const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& pose) {
+  const auto tenths = [](double metres) { return std::round(10 * mm_from_metres(metres)) / 10; };
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3d at = pose * point.cast<double>();
+    list.push_back({tenths(at.x()), tenths(at.y()), tenths(at.z())});
+  }
+}
+
+}  // namespace
+
+void write_pose_points(const std::filesystem::path& folder, const std::vector<StoredTurn>& turns,
+                       const std::vector<std::vector<Eigen::Vector3f>>& points) {
+  json before = json::array();
+  for (std::size_t i = 0; i + 1 < turns.size(); ++i) {
+    append(before, points[i],
+           turns[i].object_from_platform.value_or(Eigen::Isometry3d::Identity()));
+  }
+  json pose = json::array();
+  append(pose, points.back(), Eigen::Isometry3d::Identity());
+  write_file(folder / pose_points_file,
+             json{{"before_mm", std::move(before)}, {"pose_mm", std::move(pose)}}.dump());
 }
 
 }  // namespace octurn

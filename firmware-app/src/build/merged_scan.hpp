@@ -1,5 +1,8 @@
 #pragma once
 
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <memory>
 #include <optional>
@@ -8,9 +11,38 @@
 
 #include "octurn/register.hpp"
 #include "octurn/scan_folder.hpp"
-#include "store/kept_frames.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
+
+/// A cache of decoded depth images that are read twice. It stores each image cropped to the
+/// bounding box of its readings, until its memory is full.
+class KeptFrames {
+ public:
+  /// @param count      number of images
+  /// @param max_bytes  maximum size of the stored images
+  KeptFrames(std::size_t count, std::size_t max_bytes);
+
+  /// Stores an image if there is room. Threads may store images of different indices at the same
+  /// time.
+  void keep(std::size_t index, const DepthFrame& frame);
+
+  /// Returns the whole image; nullopt if it is not stored.
+  std::optional<DepthFrame> find(std::size_t index) const;
+
+ private:
+  struct Window {
+    int width = 0;   // of the image
+    int height = 0;  // of the image
+    int left = 0;
+    int top = 0;
+    int columns = 0;
+    std::vector<std::uint16_t> depth = {};  // row by row
+  };
+
+  std::vector<std::optional<Window>> windows_;
+  std::atomic<std::size_t> room_;  // bytes
+};
 
 /// One turn of the platform in a stored scan.
 struct StoredTurn {
@@ -50,5 +82,22 @@ Registration register_turns(std::vector<StoredTurn>& turns, int threads,
 /// @throws Error "disk-full", "write-failed"
 void write_merged_scan(const std::filesystem::path& folder, const std::vector<StoredTurn>& turns,
                        const Registration& registration);
+
+/// Solves the sensor's pose for each turn without a solved one, from its snapshots, once. The
+/// configured pose stays if the solution is refused or confirms it. A turn that is registered
+/// already keeps the pose with which it was. Turns of one rig share the mean of their solved poses.
+void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop);
+
+/// A file for display in the folder of another pose's scan: samples of the points of this scan and
+/// of the earlier ones.
+inline constexpr const char* pose_points_file = "pose-points.json";
+
+/// Writes `{"before_mm": [[x, y, z], ...], "pose_mm": [...]}`: points of all turns except the last,
+/// in the object's frame, and of the last one, in its platform frame at angle 0. About 100 kB.
+///
+/// @param points  of each turn, as `Registration` has them
+/// @throws Error "disk-full", "write-failed"
+void write_pose_points(const std::filesystem::path& folder, const std::vector<StoredTurn>& turns,
+                       const std::vector<std::vector<Eigen::Vector3f>>& points);
 
 }  // namespace octurn

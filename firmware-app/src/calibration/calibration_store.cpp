@@ -11,7 +11,7 @@
 #include "calibration/record_file.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
-#include "utc.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {

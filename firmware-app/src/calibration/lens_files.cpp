@@ -11,7 +11,7 @@
 #include "octurn/intrinsics_json.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
-#include "utc.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {

@@ -7,10 +7,10 @@
 #include <utility>
 
 #include "octurn/units.hpp"
-#include "settings/pose_json.hpp"
+#include "settings/pose_field.hpp"
 #include "settings/scan_settings.hpp"
-#include "store/laser_planes.hpp"
-#include "utc.hpp"
+#include "store/job_json.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {

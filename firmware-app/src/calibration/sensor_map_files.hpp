@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -44,5 +45,15 @@ std::optional<SensorMapSummary> find_map_summary(const std::filesystem::path& da
 /// @throws Error "disk-full", "write-failed", "read-failed"
 void keep_sensor_map(const std::filesystem::path& data, std::string_view serial,
                      const std::filesystem::path& folder);
+
+/// JSON that `octurn calibrate --wall --json` prints. Distances from a plane are in steps of a
+/// Kinect's disparity.
+nlohmann::json to_json(const SensorMapReport& report);
+
+/// JSON of a map for `GET calibration`, without its picture.
+nlohmann::json to_json(const SensorMapSummary& map);
+
+/// JSON of a map's picture: `errors` in steps of a Kinect's disparity.
+nlohmann::json to_picture(const SensorMapSummary& map);
 
 }  // namespace octurn

@@ -1,6 +1,5 @@
 #include "camera/camera.hpp"
 
-#include "camera/camera_module.hpp"
 #include "module.hpp"
 
 namespace octurn {

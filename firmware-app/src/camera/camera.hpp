@@ -1,3 +1,5 @@
+// The interface between the program and its driver of cameras, which is a module: only a program
+// that looks with a camera loads it, and libcamera with it.
 #pragma once
 
 #include <chrono>
@@ -75,5 +77,11 @@ class Camera {
 /// read
 /// @throws Error "sensor-failed"   if it is in use, or does not start
 std::unique_ptr<Camera> open_camera(const CameraSettings& settings);
+
+/// What the module libOcturnCamera offers, as its symbol `octurn_camera`.
+struct CameraModule {
+  /// @throws Error  as `open_camera`
+  std::unique_ptr<Camera> (*open)(const CameraSettings& settings) = nullptr;
+};
 
 }  // namespace octurn

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
@@ -64,5 +65,12 @@ struct CameraAndLasers {
 /// @throws Error "sensor-missing"  if this machine has no such header
 /// @throws Error "sensor-failed"   if a line does not exist, is in use, or may not be used
 Lasers::SetLine open_laser_lines(const std::vector<std::string>& lines);
+
+/// Whether a line of the GPIO header becomes an input when a program ends without setting it, so
+/// that a resistor at it decides. The kernel of Raspberry Pi OS keeps its last level instead,
+/// unless it is asked not to: a laser would stay on.
+/// @param sys  where sysfs is mounted
+/// @throws Error "sensor-failed"  that says what to set
+void expect_released_lines_to_fall(const std::filesystem::path& sys = "/sys");
 
 }  // namespace octurn

@@ -1,31 +1,186 @@
 // The module that drives cameras by libcamera: those of the Pi's CSI connectors, and USB cameras.
-
 #include <libcamera/control_ids.h>
 #include <libcamera/libcamera.h>
 #include <libcamera/property_ids.h>
+#include <linux/dma-buf.h>
+#include <sys/ioctl.h>
+#include <sys/mman.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
+#include <condition_variable>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <ctime>
 #include <deque>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <span>
+#include <stop_token>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "camera/camera_module.hpp"
+#include "camera/camera.hpp"
 #include "camera/colour_picture.hpp"
-#include "camera/completed_requests.hpp"
 #include "camera/jpeg_picture.hpp"
-#include "camera/mapped_plane.hpp"
 #include "camera/pixel_formats.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {
+
 namespace {
+
+/// A plane of a buffer that a camera writes into, mapped for reading.
+class MappedPlane {
+ public:
+  /// @throws Error "sensor-failed"
+  explicit MappedPlane(const libcamera::FrameBuffer::Plane& plane);
+  ~MappedPlane();
+  MappedPlane(const MappedPlane&) = delete;
+  MappedPlane& operator=(const MappedPlane&) = delete;
+
+  std::span<const std::uint8_t> bytes() const {
+    return {static_cast<const std::uint8_t*>(begin_) + offset_, length_};
+  }
+
+  /// Between these the processor sees what the camera wrote, also where its caches do not follow
+  /// the camera.
+  void begin_reading() const { sync(true); }
+  void end_reading() const { sync(false); }
+
+ private:
+  void sync(bool begin) const;
+
+  int fd_;
+  std::size_t offset_;
+  std::size_t length_;
+  void* begin_;  // of the whole mapping, which begins with the file
+};
+
+/// All planes of a buffer.
+class MappedBuffer {
+ public:
+  /// @throws Error "sensor-failed"
+  explicit MappedBuffer(const libcamera::FrameBuffer& buffer);
+
+  /// The planes' bytes, in their order.
+  std::vector<std::span<const std::uint8_t>> planes() const;
+
+  // As of a plane.
+  void begin_reading() const;
+  void end_reading() const;
+
+ private:
+  std::deque<MappedPlane> planes_ = {};  // which stay where they are
+};
+
+MappedPlane::MappedPlane(const libcamera::FrameBuffer::Plane& plane)
+    : fd_(plane.fd.get()),
+      offset_(plane.offset),
+      length_(plane.length),
+      begin_(::mmap(nullptr, offset_ + length_, PROT_READ, MAP_SHARED, fd_, 0)) {
+  if (begin_ == MAP_FAILED) {
+    throw Error(ErrorCode::sensor_failed,
+                std::string("the camera's pictures cannot be read: ") + std::strerror(errno),
+                "Unplug the camera, and plug it in again.");
+  }
+}
+
+MappedPlane::~MappedPlane() { ::munmap(begin_, offset_ + length_); }
+
+/// Buffers that are no DMA buffers refuse this, and need none.
+void MappedPlane::sync(bool begin) const {
+  dma_buf_sync how{.flags = DMA_BUF_SYNC_READ |
+                            (begin ? std::uint64_t{DMA_BUF_SYNC_START} : DMA_BUF_SYNC_END)};
+  static_cast<void>(::ioctl(fd_, DMA_BUF_IOCTL_SYNC, &how));
+}
+
+MappedBuffer::MappedBuffer(const libcamera::FrameBuffer& buffer) {
+  for (const libcamera::FrameBuffer::Plane& plane : buffer.planes()) {
+    planes_.emplace_back(plane);
+  }
+}
+
+std::vector<std::span<const std::uint8_t>> MappedBuffer::planes() const {
+  std::vector<std::span<const std::uint8_t>> bytes;
+  for (const MappedPlane& plane : planes_) {
+    bytes.push_back(plane.bytes());
+  }
+  return bytes;
+}
+
+void MappedBuffer::begin_reading() const {
+  for (const MappedPlane& plane : planes_) {
+    plane.begin_reading();
+  }
+}
+
+void MappedBuffer::end_reading() const {
+  for (const MappedPlane& plane : planes_) {
+    plane.end_reading();
+  }
+}
+
+/// Requests that libcamera's thread has completed, on their way to the thread that reads.
+class CompletedRequests {
+ public:
+  enum class Outcome { completed, stopped, late, disconnected };
+
+  /// Called by libcamera's thread.
+  void add(libcamera::Request* request);
+  void disconnect();
+
+  /// Waits until there is a request; `late` if there is none at the deadline.
+  Outcome wait(const std::stop_token& stop, std::chrono::steady_clock::time_point deadline);
+
+  /// All that are there, the oldest first.
+  std::vector<libcamera::Request*> take();
+
+ private:
+  std::mutex mutex_;
+  std::condition_variable_any changed_;
+  std::vector<libcamera::Request*> requests_ = {};
+  bool is_disconnected_ = false;
+};
+
+void CompletedRequests::add(libcamera::Request* request) {
+  {
+    const std::lock_guard lock(mutex_);
+    requests_.push_back(request);
+  }
+  changed_.notify_all();
+}
+
+void CompletedRequests::disconnect() {
+  {
+    const std::lock_guard lock(mutex_);
+    is_disconnected_ = true;
+  }
+  changed_.notify_all();
+}
+
+CompletedRequests::Outcome CompletedRequests::wait(const std::stop_token& stop,
+                                                   std::chrono::steady_clock::time_point deadline) {
+  std::unique_lock lock(mutex_);
+  const bool changed = changed_.wait_until(
+      lock, stop, deadline, [this] { return is_disconnected_ || !requests_.empty(); });
+  if (stop.stop_requested()) {
+    return Outcome::stopped;
+  }
+  if (is_disconnected_) {
+    return Outcome::disconnected;
+  }
+  return changed ? Outcome::completed : Outcome::late;
+}
+
+std::vector<libcamera::Request*> CompletedRequests::take() {
+  const std::lock_guard lock(mutex_);
+  return std::exchange(requests_, {});
+}
 
 using std::chrono::steady_clock;
 
@@ -283,6 +438,7 @@ std::unique_ptr<Camera> open(const CameraSettings& settings) {
 }
 
 }  // namespace
+
 }  // namespace octurn
 
 extern "C" __attribute__((visibility("default"))) const octurn::CameraModule octurn_camera;

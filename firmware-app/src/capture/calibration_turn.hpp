@@ -1,5 +1,7 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -11,13 +13,22 @@
 #include "calibration/board_watch.hpp"
 #include "capture/rig.hpp"
 #include "capture/scan_observer.hpp"
-#include "capture/slice.hpp"
 #include "failure.hpp"
 #include "octurn/calibrate.hpp"
 #include "octurn/lens.hpp"
 #include "octurn/sensor_map.hpp"
 
 namespace octurn {
+
+/// Cross-section of the object: all stops' points within 1 mm of the plane y = 0 of its frame, x
+/// and z, metres.
+using Slice = std::vector<Eigen::Vector2d>;
+
+/// Adds a point if it lies in the slice. @param point  metres, object's frame
+void add_to_slice(Slice& slice, const Eigen::Vector3d& point);
+
+/// Returns every n-th point, at most 3000: enough for a picture.
+Slice thinned(const Slice& slice);
 
 /// Number of stops of a turn that measures the sensor's pose. Fewer show too few sides of the
 /// object. Each stop's depth image is held in memory, 0.6 MB.
@@ -70,5 +81,17 @@ std::optional<TurnReport> measure_turn(const ScanSettings& settings,
                                        const std::shared_ptr<const SensorMap>& map, int threads,
                                        Rig& rig, const std::stop_token& stop,
                                        const ScanObserver& observer);
+
+/// Takes the pictures of one turn with a camera and lasers, and solves the camera's pose and the
+/// lasers' planes from them. Nothing is stored.
+///
+/// @param settings  `snapshots` is the number of stops
+/// @param data      the data folder, which holds the pictures until this returns
+/// @return nullopt if stopped first
+/// @throws Error "sensor-...", "turntable-...", "disk-full", "write-failed"
+std::optional<TurnReport> measure_laser_turn(const ScanSettings& settings,
+                                             const std::filesystem::path& data, int threads,
+                                             Rig& rig, const std::stop_token& stop,
+                                             const ScanObserver& observer);
 
 }  // namespace octurn

@@ -6,10 +6,12 @@
 #include <future>
 #include <memory>
 #include <stop_token>
+#include <string>
 
 #include "capture/scan_observer.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
 
 namespace octurn {
 
@@ -53,5 +55,16 @@ class LinePreview {
   std::size_t next_ = 1;           // index of the next line to add, in steps
   std::future<void> adding_ = {};  // the last member: it ends before what it uses
 };
+
+/// Returns the number of pixels with a depth.
+std::ptrdiff_t readings_in(const DepthFrame& frame);
+
+/// Checks that a stop has about as many readings as the first one: only a part of the picture
+/// turns.
+/// @param readings  at this stop
+/// @param first     at the scan's first stop
+/// @param sensor    name, for the message
+/// @throws Error "sensor-blind"  if there are none, or far fewer than at the first stop
+void expect_coverage(std::ptrdiff_t readings, std::ptrdiff_t first, const std::string& sensor);
 
 }  // namespace octurn

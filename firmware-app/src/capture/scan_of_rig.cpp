@@ -3,13 +3,10 @@
 #include <cstddef>
 #include <system_error>
 
-#include "capture/depth_scale.hpp"
 #include "octurn/error.hpp"
-#include "store/checked_snapshots.hpp"
 #include "store/stored_scan.hpp"
 
 namespace octurn {
-
 namespace {
 
 /// The sensor's intrinsics for a scan. Known optics have the scale themselves.

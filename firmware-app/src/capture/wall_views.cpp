@@ -17,7 +17,7 @@
 #include "octurn/units.hpp"
 #include "sensor/new_folder.hpp"
 #include "store/data_folder.hpp"
-#include "utc.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {

@@ -7,13 +7,13 @@
 #include <string>
 #include <system_error>
 
-#include "build/build_task.hpp"
+#include "build/build_model.hpp"
 #include "log.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
-#include "store/build_file.hpp"
+#include "store/builds.hpp"
 #include "store/data_folder.hpp"
-#include "store/failure_json.hpp"
+#include "store/job_json.hpp"
 
 namespace octurn {
 namespace {

@@ -5,7 +5,7 @@
 #include <stop_token>
 
 #include "failure.hpp"
-#include "store/build_run.hpp"
+#include "store/builds.hpp"
 
 namespace octurn {
 

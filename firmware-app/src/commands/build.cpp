@@ -1,6 +1,6 @@
 #include "cluster/external_build.hpp"
 #include "commands/model_commands.hpp"
-#include "process_memory.hpp"
+#include "process.hpp"
 #include "signal_stop.hpp"
 
 namespace octurn {

@@ -12,7 +12,7 @@
 
 #include "calibration/calibration_store.hpp"
 #include "commands/commands.hpp"
-#include "commands/usb_recording.hpp"
+#include "commands/record.hpp"
 #include "doctor/diagnostics.hpp"
 #include "doctor/turn_checks.hpp"
 #include "octurn/error.hpp"
@@ -20,7 +20,7 @@
 #include "octurn/snapshot.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
-#include "zip_archive.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 namespace {

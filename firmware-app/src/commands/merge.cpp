@@ -11,7 +11,7 @@
 #include "settings/scan_settings.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
-#include "store/pose_of_json.hpp"
+#include "store/job_json.hpp"
 
 namespace octurn {
 namespace {

@@ -1,18 +1,25 @@
 #include <chrono>
+#include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <stop_token>
+#include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
-#include "commands/coloured_model.hpp"
 #include "commands/commands.hpp"
 #include "commands/model_report.hpp"
 #include "commands/reconstruct_input.hpp"
+#include "mesh/mesh_formats.hpp"
+#include "mesh/model_colours.hpp"
 #include "octurn/error.hpp"
+#include "octurn/file.hpp"
 #include "octurn/model.hpp"
 #include "octurn/quality.hpp"
+#include "octurn/scan_folder.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/tiles.hpp"
 #include "octurn/units.hpp"
@@ -20,11 +27,70 @@
 #include "settings/field.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"
-#include "store/checked_snapshots.hpp"
-#include "store/quality_json.hpp"
+#include "store/job_json.hpp"
+#include "store/stored_scan.hpp"
 
 namespace octurn {
 namespace {
+
+/// Writes a model with colours in two steps: an STL beside the file, then the file itself.
+class ColouredModel {
+ public:
+  /// @throws Error "bad-settings"    if the file's extension is not of a format with colours
+  /// @throws Error "scan-malformed"  if the scan has no pictures
+  ColouredModel(const std::filesystem::path& file, const Scan& scan);
+
+  /// Removes the STL.
+  ~ColouredModel();
+  ColouredModel(const ColouredModel&) = delete;
+  ColouredModel& operator=(const ColouredModel&) = delete;
+
+  const std::filesystem::path& stl() const { return stl_; }
+
+  /// Colours the finished STL and writes the file, which appears whole or not at all.
+  /// @param folder  of the scan
+  /// @throws Error "disk-full", "write-failed", "memory-limit"; Stopped
+  void write(const std::filesystem::path& folder, const Scan& scan,
+             const std::stop_token& stop) const;
+
+ private:
+  std::filesystem::path file_;
+  std::filesystem::path stl_;
+  const MeshFormat& format_;
+};
+
+const MeshFormat& to_format(const std::filesystem::path& file) {
+  const MeshFormat* const format = find_mesh_format(file.extension().string());
+  if (format == nullptr) {
+    throw Error(
+        ErrorCode::bad_settings,
+        file.string() + ": a model with colours is a file that ends with " + mesh_file_names(""),
+        "An STL has no colours.");
+  }
+  return *format;
+}
+
+ColouredModel::ColouredModel(const std::filesystem::path& file, const Scan& scan)
+    : file_(std::filesystem::absolute(file)),
+      stl_(temporary_name(file_.string() + ".stl", 0)),
+      format_(to_format(file)) {
+  if (!scan.laser) {
+    throw Error(ErrorCode::scan_malformed, "the scan has no pictures, and so no colours",
+                "Only a scan by laser line has them.");
+  }
+}
+
+ColouredModel::~ColouredModel() {
+  std::error_code ignored;
+  std::filesystem::remove(stl_, ignored);
+}
+
+void ColouredModel::write(const std::filesystem::path& folder, const Scan& scan,
+                          const std::stop_token& stop) const {
+  const FacetFile facets(stl_);
+  const std::vector<Rgb> colours = model_colours(facets, folder, scan, stop);
+  format_.write({.facets = facets, .name = file_.stem().string(), .colours = colours}, file_);
+}
 
 using Clock = std::chrono::steady_clock;
 using Json = nlohmann::ordered_json;

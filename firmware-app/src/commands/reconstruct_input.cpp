@@ -6,7 +6,7 @@
 #include "calibration/solve_pose.hpp"
 #include "capture/last_look.hpp"
 #include "commands/options.hpp"
-#include "process_memory.hpp"
+#include "process.hpp"
 #include "settings/field.hpp"
 #include "store/scan_archive.hpp"
 

@@ -10,7 +10,7 @@
 #include "http/scan_json.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
-#include "process_memory.hpp"
+#include "process.hpp"
 #include "progress_bar.hpp"
 #include "run/scanner.hpp"
 #include "sensor/depth_sensor.hpp"

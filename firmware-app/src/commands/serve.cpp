@@ -1,24 +1,106 @@
 #include <algorithm>
 #include <array>
+#include <chrono>
+#include <filesystem>
+#include <fstream>
 #include <iostream>
 #include <optional>
+#include <sstream>
+#include <string>
+#include <system_error>
 
 #include "appliance/appliance.hpp"
 #include "commands/commands.hpp"
-#include "commands/start_record.hpp"
 #include "http/api.hpp"
-#include "http/captive_portal.hpp"
 #include "http/http_server.hpp"
+#include "http/same_origin.hpp"
 #include "log.hpp"
-#include "process_memory.hpp"
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "process.hpp"
 #include "run/scanner.hpp"
 #include "sensor/depth_sensor.hpp"
-#include "service_manager.hpp"
 #include "signal_stop.hpp"
 #include "version.hpp"
 
 namespace octurn {
 namespace {
+
+/// Detects a crash loop: a daemon that dies soon after each start, for example in the driver of a
+/// broken device. The file `starts` in the data folder counts the starts of this boot of the
+/// machine. It is removed when the daemon ends normally, or has run for a minute.
+class StartRecord {
+ public:
+  /// Counts this start, or logs that it is not counted if the folder cannot be written to.
+  explicit StartRecord(const std::filesystem::path& data);
+  ~StartRecord();
+  StartRecord(const StartRecord&) = delete;
+  StartRecord& operator=(const StartRecord&) = delete;
+
+  /// Whether at least three starts before this one crashed. The devices should then stay closed.
+  bool is_safe_mode() const { return failed_starts_ >= 3; }
+
+  /// Removes the file if a minute has passed since the start.
+  void remove_when_stable();
+
+ private:
+  void forget();
+
+  std::filesystem::path file_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
+  int failed_starts_ = 0;
+  bool is_kept_ = true;
+};
+
+namespace fs = std::filesystem;
+using namespace std::chrono_literals;
+
+constexpr auto long_enough = 1min;
+constexpr std::size_t max_bytes = 4096;
+
+/// The kernel's id of this boot. Starts of earlier boots do not count: the machine may have lost
+/// power, which is no crash of a driver.
+std::string read_boot_id() {
+  std::ifstream file("/proc/sys/kernel/random/boot_id");
+  std::string id;
+  file >> id;
+  return id;
+}
+
+/// The number of starts of a boot that the file counts; 0 if it is of another boot.
+int read_starts(const fs::path& file, const std::string& boot) {
+  std::istringstream text(read_regular_file(file, max_bytes).value_or(""));
+  std::string of_boot;
+  int starts = 0;
+  text >> of_boot >> starts;
+  return text && of_boot == boot ? starts : 0;
+}
+
+StartRecord::StartRecord(const fs::path& data) : file_(data / "starts") {
+  try {
+    const std::string boot = read_boot_id();
+    failed_starts_ = read_starts(file_, boot);
+    write_file(file_, boot + " " + std::to_string(failed_starts_ + 1) + "\n");
+  } catch (const Error& error) {
+    log::info("octurn", std::string("this start is not counted: ") + error.what());
+  }
+}
+
+StartRecord::~StartRecord() { forget(); }
+
+void StartRecord::remove_when_stable() {
+  if (std::chrono::steady_clock::now() - began_ > long_enough) {
+    forget();
+  }
+}
+
+void StartRecord::forget() {
+  if (is_kept_) {
+    is_kept_ = false;
+    std::error_code ignored;
+    fs::remove(file_, ignored);
+  }
+}
 
 using namespace std::chrono_literals;
 

@@ -3,7 +3,7 @@
 #include <utility>
 
 #include "commands/commands.hpp"
-#include "config/stored_settings.hpp"
+#include "config/config_store.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 

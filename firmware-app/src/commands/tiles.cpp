@@ -8,7 +8,7 @@
 #include "octurn/error.hpp"
 #include "octurn/model.hpp"
 #include "octurn/units.hpp"
-#include "process_memory.hpp"
+#include "process.hpp"
 #include "progress_bar.hpp"
 #include "signal_stop.hpp"
 #include "standard_output.hpp"

@@ -1,15 +1,51 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <mutex>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config.hpp"
-#include "config/stored_settings.hpp"
 
 namespace octurn {
+
+/// The settings that the page has set, in the form of octurn.json.
+struct StoredSettings {
+  nlohmann::json values = nlohmann::json::object();
+  std::string trouble = {};  ///< why `values` differ from the file; empty if they do not
+};
+
+/// A configuration with some settings changed.
+///
+/// @param values  in the form of octurn.json
+/// @throws Error "bad-settings"  that names the key, its value and what is allowed
+Config with_settings(const Config& base, const nlohmann::json& values);
+
+/// The same with settings that the page has set.
+/// @param values  without `fixed_keys`; of `laser` only `laser_keys_of_page`
+Config with_page_settings(const Config& base, const nlohmann::json& values);
+
+/// Reads `data/settings.json`. Does not throw for a damaged or refused file: it then returns the
+/// settings that the daemon last served with, or else the accepted part of the file.
+///
+/// @param base  the configuration that the settings override and may not contradict
+StoredSettings read_stored_settings(const std::filesystem::path& data, const Config& base);
+
+/// Writes `data/settings.json`, whole or not at all. @throws Error "disk-full", "write-failed"
+void write_stored_settings(const std::filesystem::path& data, const nlohmann::json& values);
+
+/// Stores settings as the ones that the daemon last served with. @throws Error  as above
+void write_last_good_settings(const std::filesystem::path& data, const nlohmann::json& values);
+
+/// The settings that the daemon last served with; empty if they are unknown or refused.
+nlohmann::json read_last_good_settings(const std::filesystem::path& data, const Config& base);
+
+/// Merges a change into settings (RFC 7396): null removes a key, an object is merged key by key.
+/// Objects that become empty are removed.
+nlohmann::json merged(nlohmann::json values, const nlohmann::json& change);
 
 /// The layers of the configuration below and above the page's settings.
 struct ConfigLayers {
@@ -77,5 +113,13 @@ bool applies_at_once(std::string_view key);
 /// JSON Schema of octurn.json. "x-restart" is true for keys that take effect at the next start.
 /// Leaves out the keys that describe the rig's construction, which the page cannot set.
 nlohmann::json config_schema();
+
+/// Keys of octurn.json that the page may not set. Who may change settings must not decide where
+/// they are stored or who else may change them. The kind of sensor is set where the rig is built.
+inline constexpr std::array<std::string_view, 3> fixed_keys{"data", "password_file", "sensor"};
+
+/// Keys of `laser` in octurn.json that the page may set: the exposure of pictures. The others are
+/// the calibration of camera and lasers, and the lasers' GPIO lines.
+inline constexpr std::array<std::string_view, 2> laser_keys_of_page{"exposure_ms", "gain"};
 
 }  // namespace octurn

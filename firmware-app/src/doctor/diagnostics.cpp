@@ -14,7 +14,7 @@
 
 #include "calibration/calibration_store.hpp"
 #include "calibration/optics_files.hpp"
-#include "doctor/system_files.hpp"
+#include "doctor/machine_checks.hpp"
 #include "octurn/error.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "store/data_folder.hpp"

@@ -10,7 +10,7 @@
 #include "doctor/finding.hpp"
 #include "run/status_board.hpp"
 #include "store/job.hpp"
-#include "zip_archive.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 

@@ -7,12 +7,9 @@
 #include "calibration/calibration_store.hpp"
 #include "calibration/optics_files.hpp"
 #include "doctor/machine_checks.hpp"
-#include "doctor/permission_checks.hpp"
 #include "doctor/sensor_checks.hpp"
-#include "doctor/system_files.hpp"
-#include "store/earlier_scans.hpp"
 #include "store/scan_estimate.hpp"
-#include "turntable/pulse_train.hpp"
+#include "turntable/motion.hpp"
 #include "turntable/real_time.hpp"
 #include "wall_clock.hpp"
 

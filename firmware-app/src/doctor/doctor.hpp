@@ -9,7 +9,7 @@
 #include "config.hpp"
 #include "config/config_store.hpp"
 #include "doctor/finding.hpp"
-#include "doctor/sensor_reading.hpp"
+#include "doctor/sensor_checks.hpp"
 #include "doctor/turntable_checks.hpp"
 #include "run/scanner.hpp"
 

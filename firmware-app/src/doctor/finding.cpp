@@ -7,8 +7,8 @@
 #include <utility>
 
 #include "octurn/units.hpp"
-#include "utc.hpp"
 #include "version.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {

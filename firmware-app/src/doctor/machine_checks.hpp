@@ -3,10 +3,16 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
+#include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
+#include <thread>
+#include <vector>
 
 #include "doctor/finding.hpp"
+#include "latest.hpp"
 
 namespace octurn {
 
@@ -45,5 +51,79 @@ std::optional<Finding> check_throttling(const std::filesystem::path& root);
 /// @param synchronised  as `is_clock_synchronised` says
 Finding check_clock(const std::filesystem::path& root, std::chrono::system_clock::time_point now,
                     bool synchronised);
+
+// Checks of this program's permissions. `root` is the folder with /dev and /sys: "/" except in
+// tests.
+
+/// Whether a supported sensor is on USB, and this user may open it.
+Finding check_usb(const std::filesystem::path& root);
+
+/// Whether this user may open the GPIO chips.
+Finding check_gpio_permission(const std::filesystem::path& root);
+
+/// Whether this user may write into the data folder, or create it.
+Finding check_data_folder(const std::filesystem::path& data);
+
+/// Whether the stepper's thread gets real-time priority.
+/// @param refusal  the kernel's reason against it; empty if it allows it
+Finding check_real_time(const std::string& refusal);
+
+// Small files of /sys and /proc. A missing file or folder is no error.
+
+/// Paths of a folder's entries, sorted by name.
+std::vector<std::filesystem::path> entries(const std::filesystem::path& folder);
+
+/// The first line of a file, without line feed.
+std::optional<std::string> first_line(const std::filesystem::path& file);
+
+/// The number at the beginning of a file.
+std::optional<double> number_in(const std::filesystem::path& file);
+
+/// Whether this process may read and write a file or device.
+bool may_use(const std::filesystem::path& file);
+
+/// Health of the machine, for the status.
+struct MachineHealth {
+  std::uint64_t disk_free_bytes = 0;
+  std::vector<Finding> warnings = {};  ///< warnings and faults
+  friend bool operator==(const MachineHealth&, const MachineHealth&) = default;
+};
+
+/// Polling intervals of a MachineWatch. Free space takes one system call, the warnings a dozen
+/// files; 30 s still report a failing power supply soon.
+struct WatchIntervals {
+  std::chrono::milliseconds disk{1000};
+  std::chrono::milliseconds warnings{30'000};
+};
+
+/// Polls disk and machine on its own thread, so that a hanging disk does not block readers of the
+/// status. Any thread may call `health`.
+class MachineWatch {
+ public:
+  /// Sources of the health. The constructor calls both once, then the watch's thread does. After an
+  /// exception the old values stay, and the log says why.
+  struct Sources {
+    std::function<std::uint64_t()> free_bytes;
+    std::function<std::vector<Finding>()> warnings;
+  };
+
+  explicit MachineWatch(Sources sources, const WatchIntervals& intervals = {});
+
+  /// Returns the same object until something changes. Touches no disk.
+  std::shared_ptr<const MachineHealth> health() const { return health_.get(); }
+
+ private:
+  using Time = std::chrono::steady_clock::time_point;
+
+  void poll(Time now);
+  void run(const std::stop_token& stop);
+
+  Sources sources_;
+  WatchIntervals intervals_;
+  std::optional<Time> warnings_polled_ = {};
+  std::string trouble_ = {};  // why the last poll failed; empty: it succeeded
+  Latest<MachineHealth> health_;
+  std::jthread thread_;  // the last member, so that it ends before what it uses goes away
+};
 
 }  // namespace octurn

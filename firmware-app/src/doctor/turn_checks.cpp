@@ -1,12 +1,350 @@
 #include "doctor/turn_checks.hpp"
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
-#include <optional>
+#include <cstdint>
+#include <numbers>
 #include <utility>
 
+#include "capture/take_depth_image.hpp"
+#include "log.hpp"
+#include "octurn/error.hpp"
+#include "octurn/snapshot.hpp"
+
 namespace octurn {
+namespace {
+
+constexpr int frames_at_look = 6;
+
+// Commanded moves, tried in turn until the platform is seen to move: enough for gears of 1, 4 and
+// 12 times the configured gear ratio.
+constexpr std::array first_moves_deg{8.0, 30.0, 90.0};
+constexpr double seen_move_deg = 10;  // target of each later move, degrees of the platform
+constexpr int few_moves = 4;          // the median tolerates two wrong measurements
+constexpr int more_moves = 8;         // their median is accurate to some percent
+// Search range of the first moves. A platform that turns six times as far as commanded leaves it
+// with its first move of 8 degrees, but not with the next, whose size follows from what was seen.
+constexpr double widest_deg = 40;
+constexpr double expected_deg = 6;  // search range about an expected angle
+constexpr double still_deg = 1;     // a first move below it counts as standing still
+constexpr double closing_deg = 32;  // search range after a turn: 9 % of it
+constexpr double settled_deg = 2;   // a comparison so close does not depend on the pose
+constexpr int closing_looks = 3;
+constexpr int play_rounds = 3;
+constexpr double approach_deg = 15;  // more than the backlash of any gears
+// Minimum angle between two compared frames: the sensor's fixed-pattern error is the same in both,
+// and biases smaller angles towards 0.
+constexpr double apart_deg = 8;
+constexpr int looks = 2 * few_moves + more_moves + closing_looks + 3 * play_rounds + 2;
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::ranges::nth_element(values, middle);
+  return *middle;
+}
+
+[[noreturn]] void throw_unseen(const std::string& what) {
+  throw Error(ErrorCode::sensor_blind, what,
+              "Put an object with corners on the middle of the platform, such as a shoe.");
+}
+
+AngleRange around(double deg, double half_width_deg) {
+  return {.min_deg = deg - half_width_deg, .max_deg = deg + half_width_deg};
+}
+
+/// Moves the motor to commanded angles from the starting position, and compares the depth
+/// frames ("looks") taken there.
+class TurnMeter {
+ public:
+  TurnMeter(Rig& rig, PlatformLook view, const std::stop_token& stop,
+            const std::function<void(double)>& on_progress)
+      : rig_(rig),
+        view_(std::move(view)),
+        stop_(stop),
+        on_progress_(on_progress),
+        start_(rig.turntable().position()) {}
+
+  TurnMeasurement measure();
+
+ private:
+  void move_to(double commanded_deg);
+  DepthFrame look();
+  DepthFrame look_at(double commanded_deg);
+  DepthFrame look_from_below(double commanded_deg, double rate);
+  double seen(const DepthFrame& from, const DepthFrame& to, const AngleRange& range);
+  double median_rate(int moves, double move_deg, const AngleRange& range);
+  double measure_rate();
+  double measure_whole(double rate);
+  double measure_play(double rate);
+  double measure_return(double rate);
+
+  Rig& rig_;
+  PlatformLook view_;
+  const std::stop_token& stop_;
+  const std::function<void(double)>& on_progress_;
+  std::int64_t start_;
+  double commanded_deg_ = 0;
+  DepthFrame first_look_ = {};
+  std::vector<double> sharpness_ = {};
+  int looks_done_ = 0;
+  double swings_for_s_ = 0;  // at most
+};
+
+void TurnMeter::move_to(double commanded_deg) {
+  Turntable& turntable = rig_.turntable();
+  const double steps = commanded_deg / 360 * turntable.steps_per_turn();
+  commanded_deg_ = commanded_deg;
+  if (!turntable.move_to(start_ + std::llround(steps), stop_)) {
+    throw Stopped{};
+  }
+}
+
+/// Returns the mean of `frames_at_look` frames of the platform at rest.
+DepthFrame TurnMeter::look() {
+  const std::vector<DepthFrame> frames =
+      read_still_frames(rig_, view_, frames_at_look, stop_, [](const DepthFrame&) {});
+  if (frames.empty()) {
+    throw Stopped{};
+  }
+  swings_for_s_ = std::max(swings_for_s_, rig_.settling().time().count());
+  on_progress_(std::min(1.0, static_cast<double>(++looks_done_) / looks));
+  return merge_frames(frames, DepthFilter::average);
+}
+
+DepthFrame TurnMeter::look_at(double commanded_deg) {
+  move_to(commanded_deg);
+  return look();
+}
+
+/// Takes a frame at a commanded angle that is approached forwards, so that the backlash is taken
+/// up.
+DepthFrame TurnMeter::look_from_below(double commanded_deg, double rate) {
+  if (commanded_deg <= commanded_deg_) {
+    move_to(commanded_deg - approach_deg / std::abs(rate));
+  }
+  return look_at(commanded_deg);
+}
+
+double TurnMeter::seen(const DepthFrame& from, const DepthFrame& to, const AngleRange& range) {
+  const auto rotation = seen_rotation(view_, from, to, range);
+  if (!rotation) {
+    throw_unseen("there is no object on the platform whose turn could be seen");
+  }
+  sharpness_.push_back(rotation->sharpness);
+  return rotation->deg;
+}
+
+/// Makes equal moves forwards. @return median rate: degrees of the platform for each commanded
+/// degree
+double TurnMeter::median_rate(int moves, double move_deg, const AngleRange& range) {
+  std::vector<double> rates;
+  DepthFrame before = look();
+  for (int move = 0; move < moves; ++move) {
+    DepthFrame now = look_at(commanded_deg_ + move_deg);
+    rates.push_back(seen(before, now, range) / move_deg);
+    before = std::move(now);
+  }
+  return median(std::move(rates));
+}
+
+/// Measures the rate with moves that are adapted to a good size.
+/// @return the rate; 0 if the platform stands still
+double TurnMeter::measure_rate() {
+  for (const double move_deg : first_moves_deg) {
+    const double first = median_rate(few_moves, move_deg, around(0, widest_deg));
+    if (std::abs(first * move_deg) < still_deg) {
+      continue;
+    }
+    const double second =
+        median_rate(few_moves, seen_move_deg / std::abs(first), around(0, widest_deg));
+    const double sign = second > 0 ? 1 : -1;
+    return second == 0 ? 0
+                       : median_rate(more_moves, seen_move_deg / std::abs(second),
+                                     around(sign * seen_move_deg, expected_deg));
+  }
+  return 0;
+}
+
+/// Moves by a whole turn and `apart_deg`, and corrects the rate by the angle measured to the first
+/// frame. @return the rate over that whole turn
+double TurnMeter::measure_whole(double rate) {
+  const double sign = rate > 0 ? 1 : -1;
+  double range_deg = closing_deg;
+  for (int count = 0; count < closing_looks; ++count) {
+    const double commanded_deg = sign * (360 + apart_deg) / rate;
+    const DepthFrame now = look_from_below(commanded_deg, rate);
+    const double seen_deg = seen(first_look_, now, around(sign * apart_deg, range_deg));
+    rate = (sign * 360 + seen_deg) / commanded_deg;
+    if (std::abs(seen_deg - sign * apart_deg) < settled_deg) {
+      break;
+    }
+    range_deg = expected_deg;
+  }
+  return rate;
+}
+
+/// Moves on and back some times, and measures the angle to a position a little further on before
+/// and after. @return by how much a move back falls short, degrees: the median, as an inexact pose
+/// causes errors of a degree now and then
+double TurnMeter::measure_play(double rate) {
+  const double there_deg = commanded_deg_;
+  const double on_deg = apart_deg / std::abs(rate);
+  const AngleRange range = around(0, approach_deg);
+  std::vector<double> short_by;
+  for (int round = 0; round < play_rounds; ++round) {
+    const DepthFrame before = look_from_below(there_deg, rate);
+    const DepthFrame further = look_at(there_deg + on_deg);
+    move_to(there_deg + approach_deg / std::abs(rate));
+    const DepthFrame after = look_at(there_deg);
+    short_by.push_back(seen(before, further, range) - seen(after, further, range));
+  }
+  const double short_deg = median(std::move(short_by));
+  return rate > 0 ? short_deg : -short_deg;
+}
+
+/// Commands the starting angle again. @return the platform's offset from it, degrees
+double TurnMeter::measure_return(double rate) {
+  const double on_deg = apart_deg / std::abs(rate);
+  const DepthFrame now = look_from_below(on_deg, rate);
+  const double off_deg =
+      seen(first_look_, now, around(rate * on_deg, approach_deg)) - rate * on_deg;
+  move_to(0);
+  return off_deg;
+}
+
+TurnMeasurement TurnMeter::measure() {
+  move_to(-approach_deg);
+  first_look_ = look_at(0);
+  const double rate = measure_rate();
+  if (median(sharpness_) < min_sharpness) {
+    throw_unseen("the object on the platform looks the same from all sides");
+  }
+  if (rate == 0) {
+    return {};
+  }
+  const double whole_rate = measure_whole(rate);
+  const double play_deg = measure_play(whole_rate);
+  return {.turn_deg = 360 * whole_rate,
+          .play_deg = std::max(play_deg, 0.0),
+          .return_deg = measure_return(whole_rate),
+          .swings_for_s = swings_for_s_};
+}
+
+}  // namespace
+
+TurnMeasurement measure_turn(Rig& rig, const Eigen::Isometry3d& platform_from_sensor,
+                             const Box& clip, const std::stop_token& stop,
+                             const std::function<void(double done)>& on_progress) {
+  const PlatformLook view{.intrinsics = rig.sensor().intrinsics(),
+                          .platform_from_sensor = platform_from_sensor,
+                          .clip = clip};
+  return TurnMeter(rig, view, stop, on_progress).measure();
+}
+
+namespace {
+
+// Each asks for half or twice the torque of the one before it.
+constexpr std::array slower{std::numbers::sqrt2 / 2, 0.5, std::numbers::sqrt2 / 4, 0.25};
+constexpr std::array quicker{std::numbers::sqrt2, 2.0, 2 * std::numbers::sqrt2};
+constexpr int moves = 4;
+constexpr double move_deg = 10;         // of the platform: 36 stops in a turn
+constexpr double range_deg = 32;        // a loss of several periods is seen
+constexpr double look_error_deg = 0.9;  // three times that of a comparison
+
+/// Tries paces one after another.
+class PaceTrial {
+ public:
+  PaceTrial(Rig& rig, const PlatformLook& look, double rate, const StepperSettings& settings,
+            const std::stop_token& stop)
+      : rig_(rig), look_(look), rate_(rate), stop_(stop) {
+    const double period_deg =
+        360 * full_steps_per_period / (settings.full_steps * settings.gear_ratio);
+    lost_deg_ = std::max(period_deg / 2, look_error_deg);
+  }
+  ~PaceTrial() { rig_.turntable().set_pace(1); }
+  PaceTrial(const PaceTrial&) = delete;
+  PaceTrial& operator=(const PaceTrial&) = delete;
+
+  /// Whether moves at that pace lose steps.
+  bool loses(double pace);
+
+ private:
+  DepthFrame look_after(double deg);
+  bool is_short(const DepthFrame& from, const DepthFrame& to, double turned_deg) const;
+
+  Rig& rig_;
+  const PlatformLook& look_;
+  double rate_;
+  const std::stop_token& stop_;
+  double lost_deg_;
+};
+
+/// Turns the platform on by an angle, and takes a frame. @param deg  of the platform
+DepthFrame PaceTrial::look_after(double deg) {
+  Turntable& turntable = rig_.turntable();
+  const double steps = deg / std::abs(rate_) / 360 * turntable.steps_per_turn();
+  if (!turntable.move_to(turntable.position() + std::llround(steps), stop_)) {
+    throw Stopped{};
+  }
+  const std::vector<DepthFrame> frames =
+      read_still_frames(rig_, look_, frames_at_look, stop_, [](const DepthFrame&) {});
+  if (frames.empty()) {
+    throw Stopped{};
+  }
+  return merge_frames(frames, DepthFilter::average);
+}
+
+bool PaceTrial::is_short(const DepthFrame& from, const DepthFrame& to, double turned_deg) const {
+  const double sign = rate_ < 0 ? -1 : 1;
+  const AngleRange range = {.min_deg = sign * turned_deg - range_deg,
+                            .max_deg = sign * turned_deg + range_deg};
+  const auto seen = seen_rotation(look_, from, to, range);
+  if (!seen) {
+    throw Error(ErrorCode::sensor_blind,
+                "there is no object on the platform whose turn could be seen",
+                "Put an object with corners on the middle of the platform, such as a shoe.");
+  }
+  return std::abs(seen->deg - sign * turned_deg) > lost_deg_;
+}
+
+bool PaceTrial::loses(double pace) {
+  rig_.turntable().set_pace(pace);
+  const DepthFrame first = look_after(move_deg);
+  DepthFrame before = first;
+  for (int move = 0; move < moves; ++move) {
+    DepthFrame now = look_after(move_deg);
+    if (is_short(before, now, move_deg)) {
+      return true;
+    }
+    before = std::move(now);
+  }
+  // A whole turn reaches the top speed.
+  return is_short(first, look_after(360 + apart_deg - moves * move_deg), apart_deg);
+}
+
+}  // namespace
+
+MotionLimits find_motion_limits(Rig& rig, const PlatformLook& look, double rate,
+                                const StepperSettings& settings, const std::stop_token& stop) {
+  PaceTrial trial(rig, look, rate, settings, stop);
+  MotionLimits limits;
+  const auto loses = [&](double pace) {
+    const bool does = trial.loses(pace);
+    (does ? limits.lost_at : limits.fastest) = pace;
+    return does;
+  };
+  if (loses(1)) {
+    std::ranges::find_if_not(slower, loses);
+  } else {
+    std::ranges::find_if(quicker, loses);
+  }
+  return limits;
+}
+
+double pace_with_margin(double fastest) { return fastest / std::numbers::sqrt2; }
+
 namespace {
 
 using nlohmann::json;
@@ -214,6 +552,113 @@ std::vector<TurnFinding> test_turn(Rig& rig, const StepperSettings& settings,
         check_motion(find_motion_limits(rig, look, turn.turn_deg / 360, settings, stop), settings));
   }
   return findings;
+}
+
+namespace {
+
+const Failure scan_is_running{.code = ErrorCode::busy,
+                              .detail = "a scan has the turntable",
+                              .hint = "Try again when it has ended."};
+
+}  // namespace
+
+TurntableState TurntableRunner::state() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
+}
+
+bool TurntableRunner::jog(double deg) {
+  return start(TurntableState::Doing::jogging, [deg](Rig& rig, const std::stop_token& stop) {
+    Turntable& turntable = rig.turntable();
+    const double steps = deg / 360 * turntable.steps_per_turn();
+    turntable.move_to(turntable.position() + std::llround(steps), stop);
+  });
+}
+
+bool TurntableRunner::test(const Config& config) {
+  return start(
+      TurntableState::Doing::testing,
+      [this, config](Rig& rig, const std::stop_token& stop) { run_test(rig, config, stop); });
+}
+
+void TurntableRunner::stop() {
+  const std::lock_guard lock(mutex_);
+  stop_.request_stop();
+}
+
+bool TurntableRunner::start(TurntableState::Doing doing, Job job) {
+  const std::lock_guard lock(mutex_);
+  if (state_.doing != TurntableState::Doing::nothing || scanner_.is_busy()) {
+    return false;
+  }
+  state_.doing = doing;
+  state_.failure.reset();
+  if (doing == TurntableState::Doing::testing) {
+    state_.test = TurnTest{};
+  }
+  stop_ = {};
+  // This joins the previous thread, which no longer needs the lock: `end` was its last use.
+  thread_ = std::jthread(
+      [this, job = std::move(job), stop = stop_.get_token()] { carry_out(job, stop); });
+  return true;
+}
+
+/// Has the scanner's worker do a job, until `stop` or the worker's own token requests a stop.
+void TurntableRunner::carry_out(const Job& job, const std::stop_token& stop) {
+  std::optional<Failure> failure;
+  try {
+    const bool was_called =
+        scanner_.check_devices([&](Rig& rig, const std::stop_token& worker_stop) {
+          std::stop_source either;
+          const auto request = [&] { either.request_stop(); };
+          const std::stop_callback from_here(stop, request);
+          const std::stop_callback from_worker(worker_stop, request);
+          try {
+            job(rig, either.get_token());
+            rig.release_turntable();
+          } catch (const Error&) {  // the next use reopens the devices
+            rig.close_sensor();
+            rig.close_turntable();
+            throw;
+          }
+          store_.save_platform_angle_deg(rig.platform_angle_deg());
+        });
+    if (!was_called) {
+      failure = scan_is_running;
+    }
+  } catch (...) {
+    failure = current_failure();
+    log::warning("turntable", failure->detail);
+  }
+  end(failure);
+}
+
+void TurntableRunner::run_test(Rig& rig, const Config& config, const std::stop_token& stop) {
+  const auto show = [this](double done) {
+    const std::lock_guard lock(mutex_);
+    state_.test->done = done;
+  };
+  try {
+    std::vector<TurnFinding> findings = test_turn(
+        rig, config.turntable, config.scan.platform_from_sensor, config.scan.clip, stop, show);
+    const std::lock_guard lock(mutex_);
+    state_.test->findings = std::move(findings);
+    state_.test->state = TurnTest::State::done;
+  } catch (const Stopped&) {
+    const std::lock_guard lock(mutex_);
+    state_.test->state = TurnTest::State::cancelled;
+  }
+}
+
+void TurntableRunner::end(const std::optional<Failure>& failure) {
+  const std::lock_guard lock(mutex_);
+  if (failure && state_.doing == TurntableState::Doing::testing) {
+    state_.test->state = TurnTest::State::failed;
+    state_.test->failure = failure;
+  } else {
+    state_.failure = failure;
+  }
+  state_.doing = TurntableState::Doing::nothing;
 }
 
 }  // namespace octurn

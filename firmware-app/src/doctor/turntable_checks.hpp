@@ -6,7 +6,7 @@
 #include "doctor/finding.hpp"
 #include "store/job.hpp"
 #include "turntable/gpio_lines.hpp"
-#include "turntable/wake_ups.hpp"
+#include "turntable/real_time.hpp"
 
 namespace octurn {
 

@@ -2,7 +2,9 @@
 
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 
+#include "failure.hpp"
 #include "http/message.hpp"
 #include "octurn/json_object.hpp"
 
@@ -26,5 +28,22 @@ nlohmann::json parse_body(const Request& request);
 /// Reads the display name under the key "name" of a body.
 /// @throws Error "bad-name" unless it is one line of at most 100 characters
 std::string name_in(JsonObject& body);
+
+/// An error that arises only in HTTP and has no ErrorCode.
+struct HttpProblem {
+  int status = 400;
+  std::string_view title = {};
+  std::string_view code = {};
+  std::string_view detail = {};
+  std::string_view hint = {};
+  Parameters parameters = {};  ///< the values in `detail`
+};
+
+/// An HTTP problem as application/problem+json (RFC 9457).
+Response to_response(const HttpProblem& problem);
+
+/// An error as application/problem+json (RFC 9457). The status follows from the code; unknown codes
+/// are 500.
+Response problem(const Failure& failure);
 
 }  // namespace octurn

@@ -8,8 +8,8 @@
 #include <system_error>
 #include <utility>
 
+#include "http/json_body.hpp"
 #include "http/password_file.hpp"
-#include "http/problem.hpp"
 #include "log.hpp"
 #include "random_digits.hpp"
 

@@ -9,9 +9,9 @@
 #include <set>
 #include <string>
 
-#include "http/digest.hpp"
 #include "http/guess_limit.hpp"
 #include "http/message.hpp"
+#include "http/password_file.hpp"
 
 namespace octurn {
 

@@ -5,8 +5,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "http/entity_tags.hpp"
-#include "http/packed.hpp"
+#include "http/file_response.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {

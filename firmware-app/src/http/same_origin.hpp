@@ -5,6 +5,7 @@
 #include <string>
 #include <string_view>
 
+#include "appliance/appliance.hpp"
 #include "failure.hpp"
 #include "http/message.hpp"
 
@@ -26,5 +27,15 @@ bool is_own_host(std::string_view host, std::span<const std::string> host_names)
 /// @return the reason of a refusal, or nothing
 std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names,
                                std::string_view body_type = "application/json");
+
+/// In the scanner's own WiFi, requests for other hosts are redirected to the page, so that a phone
+/// that probes for the internet shows it: Android's /generate_204, Apple's /hotspot-detect.html,
+/// Windows's /connecttest.txt, Firefox's /success.txt.
+///
+/// @param host_names  names of this host, besides the local ones
+/// @return nothing if the request is for this host, or that WiFi is off
+std::optional<Response> captive_answer(const Request& request,
+                                       std::span<const std::string> host_names,
+                                       const Appliance& appliance);
 
 }  // namespace octurn

@@ -5,11 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "store/calibration_json.hpp"
-#include "store/failure_json.hpp"
-#include "store/json_numbers.hpp"
-#include "store/model_json.hpp"
-#include "store/pose_of_json.hpp"
+#include "store/job_json.hpp"
 
 namespace octurn {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "store/build_run.hpp"
+#include "store/builds.hpp"
 #include "store/job.hpp"
 
 namespace octurn {

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "mesh/facet_file.hpp"
+#include "mesh/vertex_table.hpp"
 #include "octurn/png.hpp"
 
 namespace octurn {

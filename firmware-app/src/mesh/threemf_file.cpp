@@ -7,7 +7,7 @@
 #include "mesh/mesh_formats.hpp"
 #include "mesh/model_colours.hpp"
 #include "mesh/vertex_table.hpp"
-#include "zip_writer.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 namespace {

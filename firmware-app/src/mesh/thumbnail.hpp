@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "mesh/facet_file.hpp"
+#include "mesh/vertex_table.hpp"
 
 namespace octurn {
 

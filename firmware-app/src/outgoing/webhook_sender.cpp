@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "log.hpp"
-#include "utc.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {

@@ -3,7 +3,102 @@
 #include <type_traits>
 #include <utility>
 
+#include "log.hpp"
+#include "octurn/error.hpp"
+#include "octurn/model.hpp"
+#include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
+#include "octurn/stl.hpp"
+#include "store/stored_scan.hpp"
+
 namespace octurn {
+
+void ModelPipe::set_length(std::uint64_t bytes) {
+  {
+    const std::lock_guard lock(mutex_);
+    length_ = bytes;
+  }
+  changed_.notify_all();
+}
+
+void ModelPipe::write(std::span<const std::byte> bytes) {
+  if (bytes.empty()) {
+    return;  // an empty block marks the end
+  }
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, stop_.get_token(), [&] { return held_bytes_ < max_bytes; });
+    if (stop_.stop_requested()) {
+      throw Stopped{};
+    }
+    blocks_.emplace_back(bytes.begin(), bytes.end());
+    held_bytes_ += bytes.size();
+  }
+  changed_.notify_all();
+}
+
+void ModelPipe::close() {
+  {
+    const std::lock_guard lock(mutex_);
+    closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+void ModelPipe::fail(Failure reason) {
+  {
+    const std::lock_guard lock(mutex_);
+    failure_ = std::move(reason);
+    closed_ = true;
+  }
+  changed_.notify_all();
+}
+
+std::uint64_t ModelPipe::length() {
+  std::unique_lock lock(mutex_);
+  changed_.wait(lock, stop_.get_token(), [&] { return length_ || closed_; });
+  if (failure_) {
+    throw to_error(*failure_);
+  }
+  if (!length_ || stop_.stop_requested()) {
+    throw Error(ErrorCode::busy, "a scan has started", "Wait for its end.");
+  }
+  return *length_;
+}
+
+std::vector<std::byte> ModelPipe::read() {
+  std::vector<std::byte> block;
+  {
+    std::unique_lock lock(mutex_);
+    changed_.wait(lock, stop_.get_token(), [&] { return !blocks_.empty() || closed_; });
+    if (stop_.stop_requested() || blocks_.empty()) {
+      return {};
+    }
+    block = std::move(blocks_.front());
+    blocks_.pop_front();
+    held_bytes_ -= block.size();
+  }
+  changed_.notify_all();
+  return block;
+}
+
+ModelStream::ModelStream(std::shared_ptr<ModelPipe> pipe) : pipe_(std::move(pipe)) {
+  try {
+    bytes_ = pipe_->length();
+  } catch (...) {
+    pipe_->stop().request_stop();
+    throw;
+  }
+}
+
+ModelStream::~ModelStream() { pipe_->stop().request_stop(); }
+
+void ModelStream::send(const std::function<bool(std::span<const std::byte>)>& sink) {
+  for (std::vector<std::byte> block = pipe_->read(); !block.empty() && sink(block);
+       block = pipe_->read()) {
+  }
+}
+
 namespace {
 
 Rank to_rank(const Command& command) {
@@ -222,6 +317,36 @@ void CommandSlot::wait_for_command(Clock::duration patience) {
   std::unique_lock lock(mutex_);
   changed_.wait_for(lock, stop_.get_token(), patience,
                     [&] { return waiting_.has_value() || ended_; });
+}
+
+void make_model(const std::filesystem::path& folder, ReconstructOptions options, ModelPipe& pipe) {
+  const std::stop_token stop = pipe.stop().get_token();
+  const Scan scan = read_scan(folder);
+  const SnapshotSource snapshots = readable_snapshots(folder, scan, stop);
+  options.clip = model_clip(scan);
+  options.placements = placements(scan);
+  fit_to_sensor(options, scan);
+  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
+  reconstruction->add(snapshots, stop);
+  const SurfaceCount count = reconstruction->count(snapshots, stop);
+  expect_facets(count.facets);
+  pipe.set_length(stl_bytes(count.facets));
+  pipe.write(stl_header(count.facets));
+  const auto send = [&](std::span<const Facet> facets) { pipe.write(std::as_bytes(facets)); };
+  reconstruction->surface(snapshots, send, stop);
+  pipe.close();
+}
+
+void rebuild(const RebuildCommand& command) {
+  try {
+    command.make(*command.pipe);
+  } catch (const Stopped&) {
+    command.pipe->stop().request_stop();
+  } catch (...) {
+    Failure failure = current_failure();
+    log::error("scanner", "cannot make the model that a request asked for: " + failure.detail);
+    command.pipe->fail(std::move(failure));
+  }
 }
 
 }  // namespace octurn

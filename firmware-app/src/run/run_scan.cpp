@@ -11,9 +11,7 @@
 #include <vector>
 
 #include "build/early_model.hpp"
-#include "build/fitting_reconstruction.hpp"
 #include "calibration/solve_pose.hpp"
-#include "capture/coverage.hpp"
 #include "capture/last_look.hpp"
 #include "capture/line_preview.hpp"
 #include "capture/plan.hpp"
@@ -25,7 +23,6 @@
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
 #include "run/preview_solves.hpp"
-#include "store/checked_snapshots.hpp"
 #include "store/stored_scan.hpp"
 #include "turntable/real_time.hpp"
 

@@ -10,19 +10,19 @@
 #include <system_error>
 #include <utility>
 
+#include "build/build_model.hpp"
 #include "build/colour_model.hpp"
-#include "build/merged_model.hpp"
 #include "calibration/lens_files.hpp"
 #include "calibration/optics_files.hpp"
 #include "capture/wall_views.hpp"
 #include "log.hpp"
 #include "octurn/error.hpp"
-#include "run/rebuild.hpp"
+#include "run/command_slot.hpp"
 #include "run/worker.hpp"
-#include "store/build_file.hpp"
+#include "store/builds.hpp"
 #include "store/data_folder.hpp"
 #include "store/scan_archive.hpp"
-#include "utc.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {

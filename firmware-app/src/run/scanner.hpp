@@ -18,8 +18,6 @@
 #include "cluster/slurm_builds.hpp"
 #include "latest.hpp"
 #include "run/command_slot.hpp"
-#include "run/device_states.hpp"
-#include "run/heartbeat.hpp"
 #include "run/status_board.hpp"
 #include "store/scan_archive.hpp"
 #include "store/scan_store.hpp"

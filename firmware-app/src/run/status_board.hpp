@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
@@ -12,15 +13,66 @@
 #include "calibration/sensor_map_files.hpp"
 #include "capture/calibration_turn.hpp"
 #include "capture/rig.hpp"
+#include "failure.hpp"
 #include "latest.hpp"
 #include "octurn/png.hpp"
 #include "octurn/snapshot.hpp"
-#include "run/time_left.hpp"
-#include "store/build_run.hpp"
+#include "store/builds.hpp"
 #include "store/job.hpp"
-#include "store/scan_label.hpp"
+#include "store/scan_estimate.hpp"
 
 namespace octurn {
+
+/// When something is expected to end.
+struct ExpectedEnd {
+  using Clock = std::chrono::steady_clock;
+
+  Clock::time_point end = {};
+  Seconds later = {};  ///< time of the steps after the current one
+
+  /// Returns the remaining time at `now`: at least `later`, even if the current step takes longer
+  /// than expected.
+  Seconds left(Clock::time_point now) const;
+};
+
+/// Estimates the remaining time of a scan: the remaining stops times the median time of the last
+/// five, plus the model's time from earlier scans. Updates, at stops and while the model is made,
+/// raise the estimate by at most a tenth, because people do not believe a number that jumps.
+class TimeLeft {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// @param before     estimate from earlier scans
+  /// @param stops      number of stops of the whole turn
+  /// @param snapshots  number already taken, of a resumed scan
+  TimeLeft(const ScanEstimate& before, int stops, int snapshots, Clock::time_point now);
+
+  /// Reports the number of stored snapshots.
+  void count(int snapshots, Clock::time_point now);
+
+  /// Reports that the last snapshot is stored, and the model is begun.
+  void begin_model(Clock::time_point now);
+
+  /// Reports the fraction of the snapshots, 0 to 1, that were added again since `since`.
+  void count_model(double share, Clock::time_point since, Clock::time_point now);
+
+  /// Drops the estimate: a device failed, for an unknown time.
+  void lose_pace();
+
+  /// The estimate; nullopt if it is unknown.
+  const std::optional<ExpectedEnd>& expected() const { return expected_; }
+
+ private:
+  void tell_turn(Clock::time_point now);
+  void tell(Seconds left, Seconds later, Clock::time_point now);
+
+  ScanEstimate before_;
+  int stops_;
+  int snapshots_;
+  std::optional<Clock::time_point> last_ = {};  // of the last snapshot; nullopt: after a failure
+  std::vector<Seconds> pace_ = {};              // times of the last stops
+  std::optional<ExpectedEnd> expected_ = {};
+};
 
 /// State of a sensor or a turntable, as of its last use.
 struct DeviceStatus {
@@ -142,6 +194,36 @@ class StatusBoard {
   Latest<std::optional<BuildRun>> build_run_;
   Latest<MeshPreview> mesh_preview_;
   Latest<KnownSensor> known_sensor_;
+};
+
+/// The devices as of the worker's last use of them. The worker sets them for the decisions of other
+/// threads; the StatusBoard shows more of them, for display.
+struct DeviceStates {
+  bool sensor_is_ready = false;
+  std::string serial = {};  ///< of the sensor opened last; empty: none yet, or it has none
+  bool turntable_is_ready = false;
+  std::optional<Failure> turntable_failure = {};
+};
+
+/// Shows that a thread is still working. Any thread may read it.
+class Heartbeat {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Called by the thread between two of its waits.
+  void beat() { last_ = Clock::now().time_since_epoch().count(); }
+
+  /// Called before work of unbounded duration, such as a reconstruction: alive until the next beat.
+  void suspend() { last_ = Clock::duration::max().count(); }
+
+  /// Whether the last beat is not older than `max_silence`.
+  bool is_alive(Clock::duration max_silence) const {
+    const Clock::duration last(last_.load());
+    return last == Clock::duration::max() || Clock::now().time_since_epoch() - last <= max_silence;
+  }
+
+ private:
+  std::atomic<Clock::rep> last_ = Clock::now().time_since_epoch().count();
 };
 
 }  // namespace octurn

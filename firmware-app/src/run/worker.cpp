@@ -8,16 +8,14 @@
 #include <utility>
 #include <vector>
 
-#include "build/build_task.hpp"
-#include "build/merged_model.hpp"
-#include "build/pose_points.hpp"
+#include "build/build_model.hpp"
+#include "build/merged_scan.hpp"
 #include "calibration/lens_files.hpp"
 #include "calibration/optics_files.hpp"
 #include "calibration/sensor_map_files.hpp"
 #include "calibration/solve_pose.hpp"
 #include "capture/board_views.hpp"
-#include "capture/depth_scale.hpp"
-#include "capture/measure_laser_turn.hpp"
+#include "capture/calibration_turn.hpp"
 #include "capture/scan_of_rig.hpp"
 #include "capture/wall_views.hpp"
 #include "log.hpp"
@@ -25,8 +23,8 @@
 #include "octurn/scan_folder.hpp"
 #include "octurn/sensor_map.hpp"
 #include "octurn/stl.hpp"
-#include "run/rebuild.hpp"
-#include "store/earlier_scans.hpp"
+#include "run/command_slot.hpp"
+#include "store/scan_estimate.hpp"
 #include "store/stored_scan.hpp"
 
 namespace octurn {

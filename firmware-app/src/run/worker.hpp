@@ -12,11 +12,8 @@
 #include "capture/calibration_turn.hpp"
 #include "latest.hpp"
 #include "run/command_slot.hpp"
-#include "run/device_states.hpp"
-#include "run/heartbeat.hpp"
 #include "run/run_scan.hpp"
 #include "run/status_board.hpp"
-#include "run/time_left.hpp"
 #include "store/scan_store.hpp"
 
 namespace octurn {

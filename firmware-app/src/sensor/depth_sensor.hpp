@@ -10,8 +10,7 @@
 
 #include "octurn/png.hpp"
 #include "octurn/snapshot.hpp"
-#include "rig/packet_counts.hpp"
-#include "rig/tilt.hpp"
+#include "rig/kinect_device.hpp"
 
 namespace octurn {
 

@@ -7,7 +7,6 @@
 #include "sensor/depth_sensor.hpp"
 #include "sensor/frame_limiter.hpp"
 #include "sensor/openni_library.hpp"
-#include "sensor/openni_stream.hpp"
 
 namespace octurn {
 namespace {

@@ -14,7 +14,6 @@
 #include "rig/simulation.hpp"
 #include "sensor/depth_sensor.hpp"
 #include "sensor/openni_library.hpp"
-#include "sensor/openni_stream.hpp"
 #include "sensor/packet_logger.hpp"
 
 namespace octurn {

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "octurn/snapshot.hpp"
-#include "rig/tilt.hpp"
+#include "rig/kinect_device.hpp"
 #include "sensor/new_folder.hpp"
 
 namespace octurn {

@@ -2,9 +2,73 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdlib>
+#include <ctime>
+#include <nlohmann/json.hpp>
 #include <utility>
 
+#include "octurn/error.hpp"
+#include "octurn/file.hpp"
+#include "one_line.hpp"
+#include "settings/pose_field.hpp"
+#include "wall_clock.hpp"
+
 namespace octurn {
+namespace {
+
+using nlohmann::json;
+
+Access optional_pose(std::optional<Eigen::Isometry3d>& value) {
+  const json row{{"type", "array"}, {"items", {{"type", "number"}}}};
+  return {.read =
+              [&value](const JsonValue& given) {
+                value = given.json().is_null() ? std::nullopt : std::optional(to_pose(given));
+              },
+          .write = [&value] { return value ? to_rows(*value) : json(); },
+          .schema = {{"type", "array"}, {"items", row}}};
+}
+
+}  // namespace
+
+std::vector<Field> fields(BuildSettings& settings, const SettingRanges& ranges) {
+  std::vector<Field> all = model_fields(settings.scan, ranges);
+  all.push_back({.key = "level",
+                 .help = "surface of a coarser level; 0 is the root",
+                 .access = whole(settings.level, 0, max_levels),
+                 .method = "intersection",
+                 .default_text = "the leaves'"});
+  all.push_back(
+      {.key = "platform_from_sensor",
+       .unit = "m",
+       .help = "pose of the sensor, four rows of four numbers, in place of the configured one",
+       .access = optional_pose(settings.platform_from_sensor),
+       .default_text = "the scan's"});
+  return all;
+}
+
+json to_json(const BuildSettings& settings) {
+  BuildSettings copy = settings;
+  return to_json(fields(copy));
+}
+
+BuildSettings build_settings_from(const json& object, const BuildSettings& defaults) {
+  JsonObject keys(object, ErrorCode::bad_settings, "");
+  BuildSettings settings = defaults;
+  read_fields(keys, fields(settings));
+  check_leaf(keys, settings.scan);
+  check_clip(keys, settings.scan);
+  keys.refuse_unread();
+  return settings;
+}
+
+BuildSettings stored_build_settings_from(const JsonValue& object) {
+  JsonObject keys(object);
+  BuildSettings settings;
+  read_fields(keys, fields(settings, stored_ranges));
+  keys.refuse_unread();
+  return settings;
+}
+
 namespace {
 
 template <typename Value>
@@ -87,6 +151,90 @@ Job to_interrupted(Job job, int snapshots, const Failure& reason) {
   job.times.until_pause.reset();
   job.failure = reason;
   return job;
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* name_file = "name.txt";
+constexpr const char* notes_file = "notes.txt";
+constexpr std::size_t max_bytes = 16384;
+constexpr std::ptrdiff_t max_name = 100;    // characters
+constexpr std::ptrdiff_t max_notes = 2000;  // characters
+
+/// Counts code points of UTF-8 text: all bytes but continuation bytes, which begin with bits 10.
+std::ptrdiff_t count_characters(std::string_view text) {
+  return std::ranges::count_if(
+      text, [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; });
+}
+
+std::string read_text(const fs::path& file) {
+  try {
+    return read_regular_file(file, max_bytes).value_or("");
+  } catch (const Error&) {
+    return "";
+  }
+}
+
+}  // namespace
+
+bool is_name(const std::string& text) {
+  return count_characters(text) <= max_name && is_one_line(text);
+}
+
+bool is_notes(const std::string& text) {
+  std::string line = text;
+  std::erase_if(line, [](char c) { return c == '\n' || c == '\t'; });
+  return count_characters(text) <= max_notes && is_one_line(line);
+}
+
+ScanLabel changed(ScanLabel label, const LabelChange& change) {
+  label.name = change.name.value_or(label.name);
+  label.notes = change.notes.value_or(label.notes);
+  return label;
+}
+
+ScanLabel read_label(const fs::path& folder) {
+  return {.name = read_text(folder / name_file), .notes = read_text(folder / notes_file)};
+}
+
+void write_label(const fs::path& folder, const LabelChange& change) {
+  if (change.name) {
+    write_file(folder / name_file, *change.name);
+  }
+  if (change.notes) {
+    write_file(folder / notes_file, *change.notes);
+  }
+}
+
+namespace {
+
+constexpr std::string_view id_form = "00000000-000000-xxxx";
+
+}  // namespace
+
+bool is_scan_id(std::string_view text) {
+  return std::ranges::equal(text, id_form, [](char c, char form) {
+    const bool digit = c >= '0' && c <= '9';
+    return form == '0' ? digit : form == 'x' ? digit || (c >= 'a' && c <= 'f') : c == form;
+  });
+}
+
+std::string to_scan_id(ScanTime time) {
+  auto fraction = (time - std::chrono::floor<std::chrono::seconds>(time)).count();
+  std::string digits(4, '0');
+  for (auto digit = digits.rbegin(); digit != digits.rend(); ++digit, fraction >>= 4) {
+    *digit = "0123456789abcdef"[fraction & 0xf];
+  }
+  return utc_text(time, "%Y%m%d-%H%M%S-") + digits;
+}
+
+ScanTime to_time(const std::string& id) {
+  std::tm utc{};
+  const char* const fraction = ::strptime(id.c_str(), "%Y%m%d-%H%M%S-", &utc);
+  return ScanTime(std::chrono::seconds(::timegm(&utc))) +
+         ScanTime::duration(fraction == nullptr ? 0 : std::strtol(fraction, nullptr, 16));
 }
 
 }  // namespace octurn

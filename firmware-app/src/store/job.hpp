@@ -1,22 +1,50 @@
 #pragma once
 
+#include <Eigen/Geometry>
 #include <chrono>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
+#include <ratio>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "failure.hpp"
 #include "octurn/calibrate.hpp"
+#include "octurn/json_object.hpp"
 #include "octurn/model.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/register.hpp"
 #include "octurn/scan_folder.hpp"
+#include "settings/field.hpp"
 #include "settings/scan_settings.hpp"
-#include "store/build_settings.hpp"
 
 namespace octurn {
+
+/// The settings of a build: the scan settings that need no new capture, and two of its own.
+struct BuildSettings {
+  ScanSettings scan = {};         ///< only the settings of `model_fields` are used
+  std::optional<int> level = {};  ///< `intersection` only: draws the surface of this coarser level
+  /// Sensor pose to use instead of the scan's: optical frame to platform frame, metres.
+  std::optional<Eigen::Isometry3d> platform_from_sensor = {};
+};
+
+/// All these settings, each with its key, unit and range.
+std::vector<Field> fields(BuildSettings& settings, const SettingRanges& ranges = requested_ranges);
+
+nlohmann::json to_json(const BuildSettings& settings);
+
+/// Reads the settings of a new build; a missing key has the value of `defaults`.
+/// @throws Error "bad-settings"  with the key, its value and the allowed range; also for an unknown
+///                               key
+BuildSettings build_settings_from(const nlohmann::json& object, const BuildSettings& defaults);
+
+/// Reads the settings of a stored build, with `stored_ranges`. @throws Error  as above, with the
+/// code of `object`
+BuildSettings stored_build_settings_from(const JsonValue& object);
 
 using Seconds = std::chrono::duration<double>;
 
@@ -161,5 +189,44 @@ Job with_stored_changes(Job working, const Job& stored);
 /// be resumed.
 /// @param snapshots  number of stored snapshots
 Job to_interrupted(Job job, int snapshots, const Failure& reason = interruption());
+
+// A scan's label has its own files, because a running scan writes `job.json`.
+
+/// A change of a scan's label.
+struct LabelChange {
+  std::optional<std::string> name = {};  ///< one line of at most 100 characters; nullopt: unchanged
+  std::optional<std::string> notes = {};  ///< at most 2000 characters; nullopt: unchanged
+};
+
+/// Whether text is a valid name: one line of at most 100 characters.
+bool is_name(const std::string& text);
+
+/// Whether text is valid as notes: at most 2000 characters, and no control characters except line
+/// feeds and tabs.
+bool is_notes(const std::string& text);
+
+/// Returns the label after the change.
+ScanLabel changed(ScanLabel label, const LabelChange& change);
+
+/// Reads a scan's `name.txt` and `notes.txt`. One that is missing, unreadable or too large is
+/// empty.
+ScanLabel read_label(const std::filesystem::path& folder);
+
+/// Writes the changed files, each atomically.
+/// @throws Error "disk-full", "write-failed"
+void write_label(const std::filesystem::path& folder, const LabelChange& change);
+
+/// The time in a scan's id, in steps of 20 us.
+using ScanTime = std::chrono::sys_time<std::chrono::duration<std::int64_t, std::ratio<1, 50000>>>;
+
+/// Whether a text has the form of a scan's id, "20261121-081500-3f2a". No other text may become
+/// part of a path.
+bool is_scan_id(std::string_view text);
+
+/// Formats date and time of day (UTC) and the fraction of the second, so that ids sort by time.
+std::string to_scan_id(ScanTime time);
+
+/// Returns the time of an id. @param id  of the form that `is_scan_id` checks
+ScanTime to_time(const std::string& id);
 
 }  // namespace octurn

@@ -18,8 +18,7 @@
 #include "octurn/sensor_map.hpp"
 #include "settings/scan_settings.hpp"
 #include "store/data_folder.hpp"
-#include "zip_reader.hpp"
-#include "zip_writer.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 namespace {

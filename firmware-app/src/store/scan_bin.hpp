@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "store/job.hpp"
-#include "store/scan_id.hpp"
 
 namespace octurn {
 

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "store/job.hpp"
+#include "store/scan_store.hpp"
 
 namespace octurn {
 
@@ -36,5 +37,9 @@ ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSe
 
 /// Returns the median; for an even count the higher of the two middle values; 0 if there are none.
 Seconds median(std::vector<Seconds> values);
+
+/// Returns the last twenty finished scans of a store, newest first, with the sizes of their
+/// snapshots on the disk.
+std::vector<EarlierScan> earlier_scans(const ScanStore& store);
 
 }  // namespace octurn

@@ -14,13 +14,12 @@
 #include "octurn/json_object.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/tiles.hpp"
-#include "store/build_file.hpp"
+#include "store/builds.hpp"
+#include "store/job.hpp"
 #include "store/job_file.hpp"
-#include "store/json_numbers.hpp"
-#include "store/scan_id.hpp"
-#include "store/scan_label.hpp"
+#include "store/job_json.hpp"
 #include "store/stored_scan.hpp"
-#include "utc.hpp"
+#include "wall_clock.hpp"
 
 namespace octurn {
 namespace {

@@ -11,12 +11,10 @@
 #include <vector>
 
 #include "file_descriptor.hpp"
-#include "store/build_run.hpp"
+#include "store/builds.hpp"
 #include "store/data_folder.hpp"
 #include "store/job.hpp"
 #include "store/scan_bin.hpp"
-#include "store/scan_id.hpp"
-#include "store/scan_label.hpp"
 #include "wall_clock.hpp"
 
 namespace octurn {

@@ -2,17 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cstddef>
 #include <fstream>
-#include <string>
 #include <system_error>
 #include <utility>
-#include <vector>
 
 #include "log.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
-#include "octurn/png.hpp"
 
 namespace octurn {
 namespace {
@@ -112,6 +108,112 @@ bool has_colours(const std::filesystem::path& folder, const Scan& scan) {
   std::array<char, kind_at + 1> head{};
   std::ifstream file(folder / scan.shots.front().pictures.front(), std::ios::binary);
   return file.read(head.data(), head.size()) && head[kind_at] == truecolour;
+}
+
+Scan scan_to_build(const std::filesystem::path& folder, const BuildSettings& settings) {
+  Scan scan = read_scan(folder);
+  if (!scan.poses.empty()) {  // these keep their own sensor poses and clip boxes
+    if (settings.platform_from_sensor) {
+      throw Error(
+          ErrorCode::bad_settings,
+          "platform_from_sensor: a model of several poses keeps the sensor poses of its turns",
+          "Leave platform_from_sensor out.");
+    }
+    return scan;
+  }
+  scan.clip = settings.scan.clip;
+  if (settings.platform_from_sensor) {
+    scan.platform_from_sensor = *settings.platform_from_sensor;
+  }
+  if (settings.platform_from_sensor || settings.scan.pose == PoseSource::configured) {
+    scan.solved.reset();
+  }
+  return scan;
+}
+
+ModelScan scan_of_model(const ScanStore& store, const Job& job, int build) {
+  if (build == 0) {
+    const std::filesystem::path folder = store.folder(job.id);
+    return {.folder = folder, .scan = read_scan(folder)};
+  }
+  const Build* const built = find_build(job, build);
+  if (built == nullptr) {
+    throw Error(ErrorCode::no_model, "this scan has no build " + std::to_string(build),
+                "GET /api/v1/scans/ID/builds lists its builds.");
+  }
+  const std::filesystem::path folder = store.merged_scan(job.id, built->poses);
+  ModelScan of{.folder = folder, .scan = scan_to_build(folder, built->settings)};
+  const auto& calibration = built->calibration;
+  if (calibration && calibration->accepted && !calibration->confirms_told) {
+    of.scan.solved = calibration->solved;
+  }
+  return of;
+}
+
+namespace {
+
+// Memory for each snapshot in addition to the reconstruction.
+constexpr std::size_t check_bytes = 100'000;
+constexpr std::size_t calibration_bytes = 350'000;
+
+}  // namespace
+
+ReconstructOptions checked_options(const ScanSettings& settings, const Limits& limits,
+                                   std::size_t snapshots) {
+  ReconstructOptions options = reconstruct_options(settings, limits);
+  const std::size_t each =
+      check_bytes + (settings.pose == PoseSource::solved ? calibration_bytes : 0);
+  options.program_memory += each * snapshots;
+  return options;
+}
+
+PoseChecks::PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops)
+    : placements_(std::move(placements)) {
+  if (placements_.empty()) {
+    placements_.push_back({.clip = clip});
+  }
+  for (const Placement& placement : placements_) {
+    checks_.push_back(std::make_unique<ScanCheck>(placement.clip, stops));
+  }
+}
+
+void PoseChecks::add(std::size_t stop, const Snapshot& snapshot) {
+  const auto pose = static_cast<std::size_t>(snapshot.pose);
+  if (placements_[pose].object_from_platform.matrix().isIdentity(0)) {
+    checks_[pose]->add(stop, snapshot);
+    return;
+  }
+  Snapshot seen = snapshot;
+  seen.object_from_sensor =
+      placements_[pose].object_from_platform.inverse() * snapshot.object_from_sensor;
+  checks_[pose]->add(stop, seen);
+}
+
+std::vector<ScanFigures> PoseChecks::figures(int threads) const {
+  std::vector<ScanFigures> all;
+  for (std::size_t pose = 0; pose < checks_.size(); ++pose) {
+    ScanFigures figures = checks_[pose]->figures(threads);
+    const auto move = [&](std::vector<Eigen::Vector3d>& places) {
+      for (Eigen::Vector3d& place : places) {
+        place = placements_[pose].object_from_platform * place;
+      }
+    };
+    std::ranges::for_each(figures.cut_places, move);
+    move(figures.disagreeing_places);
+    move(figures.contradicted_places);
+    move(figures.seen);
+    all.push_back(std::move(figures));
+  }
+  return all;
+}
+
+SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks) {
+  const std::size_t count = snapshots.count;
+  return {.count = count, .read = [&checks, read = std::move(snapshots.read)](std::size_t shot) {
+            Snapshot snapshot = read(shot);
+            checks.add(shot, snapshot);
+            return snapshot;
+          }};
 }
 
 }  // namespace octurn

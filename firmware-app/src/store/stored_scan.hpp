@@ -1,12 +1,19 @@
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <memory>
 #include <stop_token>
 #include <string>
 #include <vector>
 
 #include "octurn/png.hpp"
+#include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
+#include "octurn/snapshot.hpp"
+#include "settings/scan_settings.hpp"
+#include "store/job.hpp"
+#include "store/scan_store.hpp"
 
 namespace octurn {
 
@@ -43,5 +50,48 @@ void store_stop(const std::filesystem::path& folder, Scan& scan, double angle);
 /// Whether the first dark picture of a laser-line scan has colours; false if it cannot be read, and
 /// for other scans.
 bool has_colours(const std::filesystem::path& folder, const Scan& scan);
+
+/// Reads a stored scan and applies a build's settings to it. The sensor's pose is not solved yet.
+/// @throws Error "bad-settings"  if the settings have a pose, and the scan has several; and as
+///                               `read_scan`
+Scan scan_to_build(const std::filesystem::path& folder, const BuildSettings& settings);
+
+/// A scan folder, and the scan in it.
+struct ModelScan {
+  std::filesystem::path folder = {};
+  Scan scan = {};
+};
+
+/// Returns the scan of a model, with the poses of sensor and object that the model was made with.
+/// @param build  number of the model's build; 0: the scan's own model
+/// @throws Error "no-model"  if there is no such build; and as `read_scan`
+ModelScan scan_of_model(const ScanStore& store, const Job& job, int build);
+
+/// Returns options for a model whose snapshots are also checked. `program_memory` includes the
+/// memory of the checks, and of solving the pose if the settings ask for it.
+ReconstructOptions checked_options(const ScanSettings& settings, const Limits& limits,
+                                   std::size_t snapshots);
+
+/// Quality checks of a scan's depth images. Each pose has its own platform frame and clip box.
+class PoseChecks {
+ public:
+  /// @param placements  one for each pose; empty: one pose with the clip box `clip`
+  /// @param stops       number of stops, of all poses together
+  PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops);
+
+  /// Adds a stop's snapshot. Threads and errors are as of `ScanCheck::add`.
+  /// @param stop  index, below the number of stops
+  void add(std::size_t stop, const Snapshot& snapshot);
+
+  /// Returns the figures of each pose, with places in the object's frame.
+  std::vector<ScanFigures> figures(int threads) const;
+
+ private:
+  std::vector<Placement> placements_;
+  std::vector<std::unique_ptr<ScanCheck>> checks_;
+};
+
+/// Wraps a source: each snapshot that is read is also added to `checks`, which must outlive it.
+SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks);
 
 }  // namespace octurn

@@ -1,8 +1,10 @@
 #include "turntable/real_time.hpp"
 
 #include <pthread.h>
-#include <sched.h>
 #include <sys/prctl.h>
+
+#include <algorithm>
+#include <thread>
 
 namespace octurn {
 namespace {
@@ -68,6 +70,27 @@ OtherCores::~OtherCores() {
 void give_up_real_time_priority() {
   const sched_param parameters{.sched_priority = 0};
   ::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &parameters);
+}
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+}  // namespace
+
+Lateness measure_wake_ups(int count, std::chrono::microseconds interval) {
+  Lateness lateness;
+  lateness.reserve(static_cast<std::size_t>(count));
+  std::thread([&] {
+    ask_for_punctual_wake_ups();
+    for (int i = 0; i < count; ++i) {
+      const Clock::time_point due = Clock::now() + interval;
+      std::this_thread::sleep_until(due);
+      lateness.push_back(Clock::now() - due);
+    }
+  }).join();
+  std::ranges::sort(lateness);
+  return lateness;
 }
 
 }  // namespace octurn

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "failure.hpp"
-#include "turntable/pulse_train.hpp"
+#include "turntable/motion.hpp"
 #include "turntable/stepper_settings.hpp"
 #include "turntable/turntable.hpp"
 

@@ -8,6 +8,38 @@
 #include "settings/field.hpp"
 
 namespace octurn {
+
+std::string_view to_string(StepperDriver driver) {
+  switch (driver) {
+    case StepperDriver::drv8825:
+      return "DRV8825";
+    case StepperDriver::tmc2209:
+      return "TMC2209";
+    case StepperDriver::a4988:
+      break;
+  }
+  return "A4988";
+}
+
+std::vector<Microstepping> microsteppings(StepperDriver driver) {
+  constexpr bool low = false;
+  constexpr bool high = true;
+  switch (driver) {
+    case StepperDriver::drv8825:  // TI's datasheet SLVSA73, table 1
+      return {{1, {low, low, low}},   {2, {high, low, low}},  {4, {low, high, low}},
+              {8, {high, high, low}}, {16, {low, low, high}}, {32, {high, low, high}}};
+    case StepperDriver::tmc2209:  // Trinamic's datasheet, section 3.3: 8 comes first
+      return {{8, {low, low}}, {16, {high, high}}, {32, {high, low}}, {64, {low, high}}};
+    case StepperDriver::a4988:  // Allegro's datasheet, table 1
+      break;
+  }
+  return {{1, {low, low, low}},
+          {2, {high, low, low}},
+          {4, {low, high, low}},
+          {8, {high, high, low}},
+          {16, {high, high, high}}};
+}
+
 namespace {
 
 using nlohmann::json;
@@ -19,7 +51,6 @@ constexpr double max_speed = 3600;
 constexpr double max_acceleration = 1e6;
 constexpr double max_pulse_rate = 5000;  // a second: beyond that Linux does not wake up in time
 constexpr int min_steps = 4;             // in a turn: fewer are no turntable
-constexpr int full_steps_per_period = 4;
 constexpr int max_steps = 16'000'000;
 constexpr int max_settle_ms = 10'000;
 constexpr int min_idle_s = 10;  // a scan stays at a stop for up to 3 s, with the most frames

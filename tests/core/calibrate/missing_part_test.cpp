@@ -6,7 +6,7 @@
 #include <memory>
 #include <utility>
 
-#include "calibrate/seen_cells.hpp"
+#include "calibrate/checked_stop.hpp"
 #include "mesh/surface_cells.hpp"
 #include "octurn/units.hpp"
 

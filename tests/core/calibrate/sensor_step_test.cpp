@@ -1,11 +1,10 @@
-#include "calibrate/sensor_step.hpp"
-
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <numbers>
 #include <random>
 
+#include "calibrate/surface_findings.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

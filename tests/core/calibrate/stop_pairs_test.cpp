@@ -1,5 +1,3 @@
-#include "calibrate/stop_pairs.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -7,6 +5,7 @@
 #include <numbers>
 #include <set>
 
+#include "calibrate/stop_residuals.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -1,8 +1,6 @@
-#include "depth/fit_plane.hpp"
-
 #include <gtest/gtest.h>
 
-#include "depth/remove_speckle.hpp"
+#include "depth/condition_depth.hpp"
 
 namespace octurn {
 namespace {

@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "mesh/self_intersections.hpp"
-#include "mesh/triangle_overlap.hpp"
 
 namespace octurn {
 namespace {

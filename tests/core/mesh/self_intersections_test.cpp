@@ -8,8 +8,6 @@
 #include <set>
 #include <vector>
 
-#include "mesh/triangle_overlap.hpp"
-
 namespace octurn {
 namespace {
 

@@ -1,9 +1,9 @@
-#include "register/contact.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>
+
+#include "register/reading_fit.hpp"
 
 namespace octurn {
 namespace {

@@ -1,11 +1,11 @@
-#include "register/free_rays.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdint>
 #include <random>
 #include <vector>
+
+#include "register/seen_turn.hpp"
 
 namespace octurn {
 namespace {

@@ -1,10 +1,9 @@
-#include "register/free_space.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 
 #include "core/register/laid_down.hpp"
+#include "register/nearest_points.hpp"
 
 namespace octurn {
 namespace {

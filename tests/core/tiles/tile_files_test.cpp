@@ -1,3 +1,5 @@
+#include "tiles/tile_files.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -8,12 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "io/checksum.hpp"
 #include "octurn/tiles.hpp"
 #include "support/room_scan.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
-#include "tiles/tile_file.hpp"
 
 namespace octurn {
 namespace {

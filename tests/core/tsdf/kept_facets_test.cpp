@@ -1,10 +1,9 @@
-#include "tsdf/kept_facets.hpp"
-
 #include <gtest/gtest.h>
 
 #include <vector>
 
 #include "octurn/snapshot.hpp"
+#include "tsdf/facet_stream.hpp"
 
 namespace octurn {
 namespace {

@@ -11,7 +11,7 @@
 #include "core/tsdf/random_field.hpp"
 #include "core/tsdf/rendered.hpp"
 #include "octurn/units.hpp"
-#include "voxel/keep_components.hpp"
+#include "voxel/connected_components.hpp"
 
 namespace octurn {
 namespace {

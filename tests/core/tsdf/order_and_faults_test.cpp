@@ -11,8 +11,8 @@
 #include "core/tsdf/rendered.hpp"
 #include "mesh/mesh_check.hpp"
 #include "tsdf/integrate.hpp"
-#include "tsdf/packed_weight.hpp"
 #include "tsdf/solid_reconstructor.hpp"
+#include "tsdf/tsdf_volume.hpp"
 
 namespace octurn {
 namespace {

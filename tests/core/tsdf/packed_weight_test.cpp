@@ -1,6 +1,6 @@
-#include "tsdf/packed_weight.hpp"
-
 #include <gtest/gtest.h>
+
+#include "tsdf/tsdf_volume.hpp"
 
 namespace octurn {
 namespace {

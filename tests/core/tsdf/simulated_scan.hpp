@@ -13,7 +13,6 @@
 #include "rig/nominal_pose.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "simulator/simulator_object.hpp"
-#include "simulator/surface_net.hpp"
 #include "tsdf/solid_reconstructor.hpp"
 
 namespace octurn {

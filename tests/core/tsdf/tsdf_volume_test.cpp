@@ -8,7 +8,7 @@
 #include "core/tsdf/random_field.hpp"
 #include "core/tsdf/rendered.hpp"
 #include "tsdf/integrate.hpp"
-#include "voxel/out_of_budget.hpp"
+#include "voxel/memory_limit.hpp"
 
 namespace octurn {
 namespace {

@@ -10,7 +10,7 @@
 #include <tuple>
 #include <vector>
 
-#include "voxel/keep_components.hpp"
+#include "voxel/connected_components.hpp"
 
 namespace octurn {
 namespace {

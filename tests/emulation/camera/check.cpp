@@ -12,7 +12,7 @@
 #include <optional>
 #include <string>
 
-#include "camera/camera_module.hpp"
+#include "camera/camera.hpp"
 #include "octurn/error.hpp"
 
 namespace octurn {

@@ -44,7 +44,6 @@
 #include "file_descriptor.hpp"
 #include "kinect/emulated/usbip_device.hpp"
 #include "simulator/camera.hpp"
-#include "simulator/disparity.hpp"
 #include "simulator/simulated_kinect.hpp"
 #include "simulator/simulator_object.hpp"
 

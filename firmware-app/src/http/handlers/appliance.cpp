@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
-#include "host_name.hpp"
 #include "http/json_body.hpp"
 #include "log.hpp"
+#include "process.hpp"
 #include "version.hpp"
 
 namespace octurn {

@@ -8,15 +8,15 @@
 
 #include "calibration/board_pdf.hpp"
 #include "calibration/lens_files.hpp"
-#include "calibration/sensor_map_json.hpp"
-#include "capture/depth_scale.hpp"
+#include "calibration/sensor_map_files.hpp"
+#include "capture/scan_of_rig.hpp"
 #include "capture/wall_views.hpp"
 #include "http/handlers/appliance.hpp"
 #include "http/json_body.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
 #include "sensor/pixel_ray.hpp"
-#include "settings/pose_json.hpp"
+#include "settings/pose_field.hpp"
 
 namespace octurn {
 namespace {

@@ -5,7 +5,6 @@
 
 #include "http/handlers/system.hpp"
 #include "http/json_body.hpp"
-#include "http/problem.hpp"
 
 namespace octurn {
 namespace {

@@ -4,20 +4,27 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include <functional>
+#include <future>
+#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <semaphore>
-#include <string_view>
 #include <system_error>
 #include <utility>
+#include <vector>
 
-#include "http/entity_tags.hpp"
+#include "build/colour_model.hpp"
 #include "http/file_response.hpp"
+#include "http/handlers/builds.hpp"
 #include "http/place.hpp"
 #include "http/scan_view.hpp"
+#include "mesh/coarse_mesh.hpp"
 #include "mesh/mesh_formats.hpp"
+#include "mesh/thumbnail.hpp"
+#include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
-#include "run/model_pipe.hpp"
+#include "run/command_slot.hpp"
 
 namespace octurn {
 namespace {
@@ -155,6 +162,187 @@ Response send_preview(App& app, const Request& request, std::string_view id) {
   }
   headers.emplace_back("Content-Type", "model/stl");
   return {.headers = std::move(headers), .body = preview->stl};
+}
+
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t max_coarse_facets = 3000;  // 150 kB; the first view with three.js: 400 kB
+constexpr std::size_t max_thumbnail_bytes = std::size_t{1} << 20U;
+
+// Held while a cached file is checked and made: memory suffices for one at a time.
+std::mutex making;
+// Held while colours are checked and made, so that requests for several formats of a model make
+// them once.
+std::mutex colouring;
+// Of requests that hold these or wait for them: a browser has six connections, and the server 28.
+std::counting_semaphore<> making_places{6};
+
+Place place_for_making() { return {&making_places, "files of models are being made for others"}; }
+
+/// The modification time of a file; the minimum if there is no file.
+fs::file_time_type written(const fs::path& file) {
+  std::error_code none;
+  const auto time = fs::last_write_time(file, none);
+  return none ? fs::file_time_type::min() : time;
+}
+
+bool is_fresh(const fs::path& file, fs::file_time_type source) {
+  const fs::file_time_type made = written(file);
+  return made != fs::file_time_type::min() && made >= source;
+}
+
+/// Makes a file if it is missing, or older than its source. Runs on a new thread, as the HTTP
+/// server's threads have small stacks.
+/// @throws Error "too-many"  if it has to be made, and others are
+void keep_fresh(const fs::path& file, fs::file_time_type source,
+                const std::function<void()>& make) {
+  if (is_fresh(file, source)) {
+    return;
+  }
+  const Place place = place_for_making();
+  const std::lock_guard lock(making);
+  if (!is_fresh(file, source)) {  // another request may have made it meanwhile
+    std::async(std::launch::async, make).get();
+  }
+}
+
+fs::path fresh_thumbnail(const fs::path& model) {
+  fs::path file = model.parent_path() / "thumbnail.png";
+  keep_fresh(file, written(model), [&] {
+    const std::vector<std::byte> png = draw_thumbnail(FacetFile(model));
+    write_file(file, {reinterpret_cast<const char*>(png.data()), png.size()});
+  });
+  return file;
+}
+
+/// Sends a simplified model for a fast first view.
+Response send_coarse(const Request& request, const fs::path& model) {
+  const fs::path file = model.parent_path() / "coarse.stl";
+  keep_fresh(file, written(model),
+             [&] { write_file(file, stl_text(coarse_mesh(FacetFile(model), max_coarse_facets))); });
+  return file_response(request, file, "model/stl", "coarse.stl");
+}
+
+/// The part of a file's name that tells its colours.
+std::string suffix_of(std::optional<Colours> paint) {
+  return !paint ? "" : *paint == Colours::views ? "-views" : "-colour";
+}
+
+/// The path of a model in another format. It is made if it is missing, or older than the model, the
+/// scan's name or the colours.
+fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model, const MeshFormat& format,
+                    std::optional<Colours> paint = {}) {
+  fs::path file = model.parent_path() / ("Scan" + suffix_of(paint));
+  file += format.extension;
+  auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
+  source = paint ? std::max(source, written(colours_file(model, *paint))) : source;
+  const fs::path thumbnail = format.has_thumbnail ? fresh_thumbnail(model) : fs::path();
+  keep_fresh(file, source, [&] {
+    const FacetFile facets(model);
+    const auto png = read_regular_file(thumbnail, max_thumbnail_bytes);  // nothing without a path
+    const std::vector<Rgb> colours = paint ? read_colours(model, *paint) : std::vector<Rgb>();
+    format.write({.facets = facets,
+                  .name = download_name(job, ""),
+                  .thumbnail = png.value_or(""),
+                  .colours = colours},
+                 file);
+  });
+  return file;
+}
+
+/// Parses a query that is empty or has `colour`. @return nothing: clay @throws Error "bad-settings"
+std::optional<Colours> wanted_paint(const Request& request) {
+  if (request.parameters.empty()) {
+    return std::nullopt;
+  }
+  const auto& [name, value] = request.parameters.front();
+  const bool is_known = value == "true" || value == "false" || value == "views";
+  if (request.parameters.size() > 1 || name != "colour" || !is_known) {
+    throw Error(ErrorCode::bad_settings, "the query of this format takes colour alone",
+                "It is true, false or views: ?colour=true");
+  }
+  return value == "false"   ? std::nullopt
+         : value == "views" ? std::optional(Colours::views)
+                            : std::optional(Colours::pictures);
+}
+
+/// Has the worker make the colours of a model if they are missing or outdated. The pictures are
+/// many and large, so that an occupied worker refuses.
+/// @param build  number of the model's build
+/// @throws Error "bad-settings"  if the scan does not have what they are made of, "busy",
+///                               "too-many"
+void keep_colours(App& app, const Job& job, const fs::path& model, int build, Colours shown) {
+  if (shown == Colours::pictures && !job.builds.have_colours) {
+    throw Error(ErrorCode::bad_settings, "this scan has no pictures in colour",
+                "Only a scan by laser line has them, if its camera sees colours.");
+  }
+  const fs::path file = colours_file(model, shown);
+  if (is_fresh(file, written(model))) {
+    return;
+  }
+  const Place place = place_for_making();
+  const std::lock_guard lock(colouring);
+  if (!is_fresh(file, written(model)) && !app.scanner.colour_model(job, build, shown)) {
+    throw Error(ErrorCode::busy, "a scan is running, or another model is being made",
+                "Wait for its end.");
+  }
+}
+
+/// Sends a model in the format of the request path's extension.
+/// @param build   number of the model's build
+/// @param suffix  of the file name under which a browser saves the model, before the extension
+Response send_in_format(App& app, const Request& request, const Job& job, const fs::path& model,
+                        int build, std::string suffix) {
+  const std::string extension = fs::path(request.path).extension().string();
+  const MeshFormat* const format = find_mesh_format(extension);
+  if (format == nullptr) {
+    throw Error(ErrorCode::not_found, "there is no " + fs::path(request.path).filename().string(),
+                "Ask for Scan.stl, " + mesh_file_names("Scan") + ".");
+  }
+  const std::optional<Colours> paint = wanted_paint(request);
+  if (paint) {
+    keep_colours(app, job, model, build, *paint);
+  }
+  suffix += suffix_of(paint);
+  return file_response(request, fresh_mesh(app, job, model, *format, paint),
+                       std::string(format->media_type), download_name(job, suffix + extension));
+}
+
+}  // namespace
+
+fs::path model_in_format(const App& app, const Job& job, const std::string& extension) {
+  fs::path model = find_model(app, job);
+  const MeshFormat* const format = find_mesh_format(extension);
+  return format != nullptr ? fresh_mesh(app, job, model, *format) : model;
+}
+
+Response send_mesh(App& app, const Request& request, std::string_view id) {
+  const Job job = find_scan(app, id);
+  const int build = find_build(job, job.builds.chosen) != nullptr ? job.builds.chosen : 0;
+  return send_in_format(app, request, job, find_model(app, job), build, "");
+}
+
+Response send_build_mesh(App& app, const Request& request, std::string_view id,
+                         std::string_view build) {
+  const fs::path model = find_build_model(app, id, build);  // checks that `build` is a number
+  return send_in_format(app, request, find_scan(app, id), model, std::stoi(std::string(build)),
+                        "-" + std::string(build));
+}
+
+Response send_thumbnail(App& app, const Request& request, std::string_view id) {
+  const fs::path model = find_model(app, find_scan(app, id));
+  return file_response(request, fresh_thumbnail(model), "image/png", "thumbnail.png");
+}
+
+Response send_coarse_model(App& app, const Request& request, std::string_view id) {
+  return send_coarse(request, find_model(app, find_scan(app, id)));
+}
+
+Response send_coarse_build(App& app, const Request& request, std::string_view id,
+                           std::string_view build) {
+  return send_coarse(request, find_build_model(app, id, build));
 }
 
 }  // namespace octurn

@@ -4,10 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "http/handlers/formats.hpp"
 #include "http/handlers/models.hpp"
 #include "http/json_body.hpp"
-#include "http/scan_news.hpp"
 #include "http/scan_view.hpp"
 #include "log.hpp"
 

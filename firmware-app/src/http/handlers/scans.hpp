@@ -38,4 +38,26 @@ Response send_estimate(App& app, const Request& request);
 /// @throws Error "busy", "not-paused", "sensor-...", "turntable-..."
 Response resume_scan(App& app, std::string_view id);
 
+// Deleted scans, at `/api/v1/bin`.
+
+/// Lists the scans that can be restored, most recently deleted first.
+Response send_bin(App& app);
+
+/// Removes all scans in the bin permanently.
+Response empty_bin(App& app);
+
+/// Restores a scan. @throws Error "no-such-scan"  if it is not in the bin
+Response restore_scan(App& app, std::string_view id);
+
+// Whole scans as zip files, to move them from one Octurn to another.
+
+/// Sends a scan's snapshots and settings as a zip file.
+/// @throws Error "no-such-scan", "busy"  while it runs, "no-model"  without snapshots, "disk-full"
+Response send_archive(App& app, const Request& request, std::string_view id);
+
+/// Receives such a zip file as a new scan, and builds its model unless a scan runs. Answers 201
+/// with Location.
+/// @throws Error "length-required", "too-large", "cut-short", "bad-request", "disk-full"
+Response import_scan(App& app, const Request& request);
+
 }  // namespace octurn

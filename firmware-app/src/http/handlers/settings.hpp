@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string_view>
+
 #include "http/app.hpp"
 #include "http/message.hpp"
 
@@ -23,5 +25,16 @@ Response restore_backup(App& app, const Request& request);
 /// Sets the page's password; null removes the one that the page has set.
 /// @throws Error "bad-json", "bad-settings", "bad-password"
 Response set_page_password(App& app, const Request& request);
+
+// Access keys of programs, at `/api/v1/keys`.
+
+Response list_keys(App& app);
+
+/// Makes a key. Only this answer contains the key itself.
+/// @throws Error "bad-json", "bad-name", "bad-settings", "disk-full", "write-failed"
+Response make_key(App& app, const Request& request);
+
+/// Revokes a key; it is invalid at once. @throws Error "not-found", "disk-full", "write-failed"
+Response revoke_key(App& app, std::string_view id);
 
 }  // namespace octurn

@@ -2,19 +2,22 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "doctor/diagnostics.hpp"
 #include "http/file_response.hpp"
+#include "http/handlers/appliance.hpp"
 #include "http/json_body.hpp"
-#include "http/preview_image.hpp"
 #include "http/scan_json.hpp"
 #include "http/scan_view.hpp"
 #include "log.hpp"
-#include "utc.hpp"
 #include "version.hpp"
-#include "zip_archive.hpp"
+#include "wall_clock.hpp"
+#include "zip_file.hpp"
 
 namespace octurn {
 
@@ -90,6 +93,115 @@ Response send_depth_picture(App& app) {
   return {.headers = {{"Content-Type", "image/png"}, {"Cache-Control", "no-store"}},
           .body = camera->picture.width > 0 ? preview_png(camera->picture)
                                             : preview_png(camera->frame, camera->lens.depth_unit)};
+}
+
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t max_lines = 200;
+
+/// The last `max_lines` lines of a text.
+json last_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  for (std::size_t at = 0; at < text.size();) {
+    const std::size_t end = std::min(text.find('\n', at), text.size());
+    lines.push_back(text.substr(at, end - at));
+    at = end + 1;
+  }
+  const std::size_t skipped = lines.size() - std::min(lines.size(), max_lines);
+  return std::vector(lines.begin() + static_cast<std::ptrdiff_t>(skipped), lines.end());
+}
+
+/// Whether the machine's health checks warn about the clock, so that it may be set.
+bool is_clock_doubtful(const App& app) {
+  const auto health = app.machine.health();
+  return std::ranges::count(health->warnings, "clock", &Finding::check) > 0;
+}
+
+Response end_machine(App& app, PowerEnd end) {
+  Appliance& machine = expect_appliance(app);
+  expect_no_update(app);
+  if (app.scanner.is_busy()) {
+    throw Error(ErrorCode::busy, "a scan is running, a model is built, or the pose is measured",
+                "Pause the scan, or wait for the end.");
+  }
+  machine.ask_for_control(end);
+  log::info("appliance", end == PowerEnd::restart ? "the page asks for a restart"
+                                                  : "the page asks to shut down");
+  return json_response(json::object(), 202);
+}
+
+}  // namespace
+
+Response set_clock(App& app, const Request& request) {
+  Appliance& machine = expect_appliance(app);
+  const auto time = clock_from(parse_body(request));
+  if (!is_clock_doubtful(app)) {
+    throw Error(ErrorCode::bad_settings, "the clock is right: a time server has set it",
+                "There is nothing to do.");
+  }
+  machine.ask_for_control(time);
+  log::info("appliance", "the page sets the clock");
+  return json_response(json::object(), 202);
+}
+
+Response restart_machine(App& app) { return end_machine(app, PowerEnd::restart); }
+
+Response shut_machine_down(App& app) { return end_machine(app, PowerEnd::off); }
+
+Response send_messages(App& app) {
+  return json_response(
+      {{"log", last_lines(log::recent())},
+       {"errors", last_lines(app.appliance != nullptr ? app.appliance->errors() : "")}});
+}
+
+namespace {
+
+constexpr int width = 320;
+constexpr int height = 240;
+
+// Brightness is linear in inverse depth, as the sensor's resolution is. A Kinect v1 measures from
+// 0.45 m; 2 m is behind any platform.
+constexpr double min_depth = 0.45;  // metres
+constexpr double max_depth = 2.0;
+constexpr double min_brightness = 24;  // distinguishes far from no reading
+
+std::uint8_t to_brightness(double depth) {
+  if (depth <= 0) {
+    return 0;
+  }
+  const double share = (1 / depth - 1 / max_depth) / (1 / min_depth - 1 / max_depth);
+  return static_cast<std::uint8_t>(
+      std::lround(min_brightness + (255 - min_brightness) * std::clamp(share, 0.0, 1.0)));
+}
+
+/// @param brightness  of a sample by its index
+template <typename Brightness>
+std::string sampled_png(int from_width, int from_height, Brightness brightness) {
+  std::vector<std::uint8_t> picture;
+  picture.reserve(static_cast<std::size_t>(width) * height);
+  for (int y = 0; y < height; ++y) {
+    const int row = y * from_height / height * from_width;
+    for (int x = 0; x < width; ++x) {
+      picture.push_back(brightness(static_cast<std::size_t>(row + x * from_width / width)));
+    }
+  }
+  const std::vector<std::byte> png = encode_grey_png(width, height, picture);
+  return {reinterpret_cast<const char*>(png.data()), png.size()};
+}
+
+}  // namespace
+
+std::string preview_png(const DepthFrame& frame, double depth_unit) {
+  return sampled_png(frame.width, frame.height, [&](std::size_t sample) {
+    return to_brightness(frame.depth[sample] * depth_unit);
+  });
+}
+
+std::string preview_png(const Picture& picture) {
+  return sampled_png(picture.width, picture.height,
+                     [&](std::size_t sample) { return picture.samples[sample]; });
 }
 
 }  // namespace octurn

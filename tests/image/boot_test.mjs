@@ -68,6 +68,8 @@ async function testSystem(guest) {
   require(size > 200, `the data partition has not grown: ${size} MiB`);
   const failed = await guest.run('systemctl --failed --plain --no-legend | cut -d" " -f1 | paste -sd" " -');
   require(failed === '', `failed units: ${failed}`);
+  const restarts = await guest.run('systemctl show -P NRestarts octurn');
+  require(restarts === '0', `the daemon has been restarted ${restarts} times`);
   const errors = await guest.run('journalctl -b -q -p err --no-pager -o cat | head -n 20');
   say(`data partition of ${size} MiB, no failed units, errors in the journal: ${errors || 'none'}`);
 }

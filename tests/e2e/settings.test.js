@@ -165,7 +165,7 @@ async function addPrinter(browser, scanner) {
 /** Both columns of a plain machine's settings end at about the same height. */
 async function compareColumns(browser, scanner) {
   const {page} = await openSettings(browser, scanner);
-  await page.getByRole('heading', {name: 'Power'}).waitFor();
+  await page.locator('#messages').waitFor();
   await page.getByRole('heading', {name: 'Printers'}).waitFor();
   const ends = await page.evaluate(() => {
     const columns = new Map();

@@ -136,10 +136,10 @@ export function makeField(key, stored, onReset) {
   editor.input.setAttribute('aria-describedby', `${help.id} ${complaint.id}`);
   setText(label, nameOf(key));
   const unit = translated(schema['x-unit'] ?? '');
-  if (unit.toLowerCase() !== nameOf(key).toLowerCase()) {  // the page's address is measured in nothing else
+  if (unit && unit.toLowerCase() !== nameOf(key).toLowerCase()) {  // the page's address is an address
     const span = document.createElement('span');
     span.className = 'muted';
-    span.textContent = unit && ` ${unit}`;
+    span.textContent = ` ${unit}`;
     label.append(span);
   }
   setText(help, schema.minItems ? '' : helpOf(key, schema));

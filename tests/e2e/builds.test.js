@@ -39,7 +39,7 @@ async function straighten(scanner, browser, screen, colorScheme) {
   await picture(page, `askew-${screen}`);
   await straightenButton.click();
   await page.locator('#verdict[data-tone=good]').waitFor();
-  await page.getByText('Found by this scan').waitFor();
+  await page.getByText('Corrected by this scan').waitFor({state: 'attached'});
   assert.ok(await straightenButton.isHidden());
   const now = await ask(scanner, `scans/${made.id}`);
   assert.deepEqual([now.build, now.model.quality.verdict], [1, 'good']);

@@ -1,21 +1,9 @@
 #include "sensor/depth_sensor.hpp"
 
-#include <filesystem>
-#include <system_error>
-
 #include "octurn/error.hpp"
 #include "rig/simulation.hpp"
 
 namespace octurn {
-
-std::unique_ptr<DepthSensor> open_sensor(const std::string& uri) {
-  std::error_code unreadable;  // OpenNI2 then says that there is no such device
-  if (std::filesystem::is_directory(uri, unreadable)) {
-    return open_recording(uri);
-  }
-  return std::filesystem::is_regular_file(uri, unreadable) ? open_oni_file(uri)
-                                                           : open_openni_sensor(uri);
-}
 
 std::optional<Picture> DepthSensor::read_infrared(const std::stop_token& /*stop*/) {
   throw Error(ErrorCode::sensor_other, name() + ": shows no infrared pictures",

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstring>
+#include <filesystem>
 #include <limits>
 #include <string>
 #include <string_view>
+#include <system_error>
 #include <tuple>
 #include <vector>
 
@@ -292,6 +294,15 @@ void OpenNiSensor::simulate(int property, double value) {
 
 std::unique_ptr<DepthSensor> open_openni_sensor(const std::string& uri) {
   return std::make_unique<OpenNiSensor>(uri);
+}
+
+std::unique_ptr<DepthSensor> open_sensor(const std::string& uri) {
+  std::error_code unreadable;  // OpenNI2 then says that there is no such device
+  if (std::filesystem::is_directory(uri, unreadable)) {
+    return open_recording(uri);
+  }
+  return std::filesystem::is_regular_file(uri, unreadable) ? open_oni_file(uri)
+                                                           : open_openni_sensor(uri);
 }
 
 }  // namespace octurn

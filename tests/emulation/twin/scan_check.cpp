@@ -35,7 +35,8 @@ class Watch {
       : kinect_(kinect),
         depths_(depth_table(kinect.parameters())),
         stream_([this](const std::stop_token& stop) {
-          kinect_.stream(stop, [this](const RawFrame& frame) { keep(frame); });
+          kinect_.stream(kinect_.use(), depth_camera, stop,
+                         [this](const RawFrame& frame) { keep(frame); });
           const std::lock_guard lock(mutex_);
           ended_ = true;
           came_.notify_all();

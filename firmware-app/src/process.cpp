@@ -92,6 +92,10 @@ class SpawnSetup {
   posix_spawnattr_t attributes_ = {};
 };
 
+constexpr int large_block_bytes = 1 << 18;  // smaller than the blocks that store voxels
+
+constexpr int kept_bytes = 1 << 25;  // glibc's maximum of M_MMAP_THRESHOLD on 64 bit
+
 }  // namespace
 
 ProgramResult run_program(const std::vector<std::string>& command, const std::stop_token& stop) {
@@ -111,14 +115,6 @@ ProgramResult run_program(const std::vector<std::string>& command, const std::st
           .output = read_content(output),
           .errors = read_content(errors)};
 }
-
-namespace {
-
-constexpr int large_block_bytes = 1 << 18;  // smaller than the blocks that store voxels
-
-constexpr int kept_bytes = 1 << 25;  // glibc's maximum of M_MMAP_THRESHOLD on 64 bit
-
-}  // namespace
 
 void keep_freed_memory() {
   ::mallopt(M_MMAP_THRESHOLD, kept_bytes);

@@ -24,6 +24,8 @@
 namespace octurn {
 namespace {
 
+namespace fs = std::filesystem;
+
 using std::chrono::system_clock;
 
 /// Memory of an open_memstream(3); valid once that stream is closed.
@@ -89,6 +91,11 @@ std::string write_archive(std::span<const ArchivedFile> files, system_clock::tim
   return {memory.bytes, memory.size};
 }
 
+[[noreturn]] void throw_full(const fs::path& file) {
+  throw Error(ErrorCode::disk_full, file.string() + ": cannot be written",
+              "Delete scans that are no longer needed.", {{"path", file.string()}});
+}
+
 }  // namespace
 
 // Runs on its own thread: minizip uses 70 KB of stack, and the HTTP server's threads have 100 KB.
@@ -97,8 +104,6 @@ std::string make_zip(std::span<const ArchivedFile> files, system_clock::time_poi
 }
 
 namespace {
-
-namespace fs = std::filesystem;
 
 constexpr std::size_t max_name = 256;
 constexpr std::size_t part_bytes = std::size_t{64} << 10U;
@@ -234,17 +239,6 @@ void unpack_zip(const fs::path& archive, const fs::path& folder, const ToTarget&
     left -= unpack_here(zip.get(), target, std::min(left, limits.file_bytes), stop);
   });
 }
-
-namespace {
-
-namespace fs = std::filesystem;
-
-[[noreturn]] void throw_full(const fs::path& file) {
-  throw Error(ErrorCode::disk_full, file.string() + ": cannot be written",
-              "Delete scans that are no longer needed.", {{"path", file.string()}});
-}
-
-}  // namespace
 
 struct ZipWriter::Archive {
   zipFile zip = nullptr;

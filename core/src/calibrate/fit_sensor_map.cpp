@@ -23,14 +23,6 @@ struct BlockValues {
   std::vector<double> weights = {};  ///< the same: 1 where the value is known, else 0
 };
 
-/// Smooths known values with a Gaussian window, then adds the smoothed residuals ("twicing", Tukey
-/// 1977): long waves keep their amplitude, short ones vanish. Unknown values have no weight; far
-/// from known ones they are filled by diffusion (Laplace's equation).
-///
-/// @param sigma  of the window, cells
-/// @return columns x rows values; 0 if none is known
-std::vector<double> smooth_blocks(const BlockValues& blocks, double sigma);
-
 constexpr double window_sigmas = 3;  // radius of the window
 constexpr double min_weight = 0.05;  // of a window's known cells, as a share of all its cells
 constexpr int max_sweeps = 2000;
@@ -126,6 +118,12 @@ void diffuse(const BlockValues& grid, std::vector<double>& values,
   }
 }
 
+/// Smooths known values with a Gaussian window, then adds the smoothed residuals ("twicing", Tukey
+/// 1977): long waves keep their amplitude, short ones vanish. Unknown values have no weight; far
+/// from known ones they are filled by diffusion (Laplace's equation).
+///
+/// @param sigma  of the window, cells
+/// @return columns x rows values; 0 if none is known
 std::vector<double> smooth_blocks(const BlockValues& blocks, double sigma) {
   const std::vector<double> window = gaussian(sigma);
   const std::vector<double> weight = convolve(blocks, blocks.weights, window);
@@ -149,14 +147,6 @@ std::vector<double> smooth_blocks(const BlockValues& blocks, double sigma) {
   diffuse(blocks, smooth, is_known);
   return smooth;
 }
-
-/// Why a view does not show a flat wall, for people; empty if it does.
-/// @param residuals  of the blocks, to the plane, 1/m
-std::string refuse_wall(const WallBlocks& wall, const WallPlane& plane,
-                        const BlockValues& residuals);
-
-/// Removes blocks that lie off an accepted wall, such as a nail.
-void drop_outliers(BlockValues& residuals);
 
 // Limits of a flat wall. Units are steps of a Kinect's disparity.
 constexpr double min_coverage = 0.9;
@@ -213,6 +203,7 @@ double step_share(const BlockValues& grid) {
   return steps / std::max(1.0, static_cast<double>(pairs));
 }
 
+/// Removes blocks that lie off an accepted wall, such as a nail.
 void drop_outliers(BlockValues& residuals) {
   for (std::size_t i = 0; i < residuals.values.size(); ++i) {
     if (std::abs(residuals.values[i]) > far_off * disparity_unit) {
@@ -222,6 +213,8 @@ void drop_outliers(BlockValues& residuals) {
   }
 }
 
+/// Why a view does not show a flat wall, for people; empty if it does.
+/// @param residuals  of the blocks, to the plane, 1/m
 std::string refuse_wall(const WallBlocks& wall, const WallPlane& plane,
                         const BlockValues& residuals) {
   if (wall.coverage < min_coverage) {

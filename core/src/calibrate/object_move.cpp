@@ -120,6 +120,19 @@ NormalEquations<3> move_equations(const Readings& readings, const ObjectView& ag
   return all;
 }
 
+using nlohmann::json;
+
+constexpr const char* last_look_key = "last_look";
+
+/// Reads the scan.json of a folder, and checks that it is a scan's. @throws Error  as `read_scan`
+json read_document(const std::filesystem::path& folder) {
+  const std::string text =
+      read_bytes(folder / "scan.json", ErrorCode::scan_missing,
+                 "Name a folder that holds a whole scan.", ErrorCode::scan_malformed);
+  parse_scan(text);
+  return parse_json(text, ErrorCode::scan_malformed, "scan.json");
+}
+
 }  // namespace
 
 std::optional<ObjectMove> measure_move(const Snapshot& first, const DepthFrame& again,
@@ -192,23 +205,6 @@ void add_move(std::vector<CalibrationFinding>& findings, const ObjectMove& move)
                       .angle = {},
                       .parameters = std::move(parameters)});
 }
-
-namespace {
-
-using nlohmann::json;
-
-constexpr const char* last_look_key = "last_look";
-
-/// Reads the scan.json of a folder, and checks that it is a scan's. @throws Error  as `read_scan`
-json read_document(const std::filesystem::path& folder) {
-  const std::string text =
-      read_bytes(folder / "scan.json", ErrorCode::scan_missing,
-                 "Name a folder that holds a whole scan.", ErrorCode::scan_malformed);
-  parse_scan(text);
-  return parse_json(text, ErrorCode::scan_malformed, "scan.json");
-}
-
-}  // namespace
 
 void write_object_move(const std::filesystem::path& folder, const ObjectMove& move) {
   json document = read_document(folder);

@@ -194,6 +194,10 @@ void refine(PlatformPlane& plane, const std::vector<Vector3d>& points) {
   plane.offset = (plane.offset + fit.z()) / length;
 }
 
+// A platform of 28 cm, 0.7 m away, has a thousand samples; a large object leaves a few hundred.
+constexpr std::size_t min_inliers = 200;
+constexpr double min_share = 0.3;
+
 }  // namespace
 
 std::vector<bool> find_plane_pixels(const PlatformSamples& samples, const PlatformPlane& plane) {
@@ -293,14 +297,6 @@ std::vector<float> sample_depths(const DepthFrame& frame, const Intrinsics& lens
   }
   return depths;
 }
-
-namespace {
-
-// A platform of 28 cm, 0.7 m away, has a thousand samples; a large object leaves a few hundred.
-constexpr std::size_t min_inliers = 200;
-constexpr double min_share = 0.3;
-
-}  // namespace
 
 std::optional<PlatformSurface> measure_platform_surface(
     const DepthFrame& frame, const Intrinsics& intrinsics,

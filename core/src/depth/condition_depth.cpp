@@ -231,6 +231,8 @@ std::vector<DepthObservation> condition_depth(const Snapshot& snapshot, const Ob
   return observations;
 }
 
+constexpr int min_support = 5;  // of the nine readings in a window
+
 }  // namespace
 
 ConditionedDepth::ConditionedDepth(const Snapshot& snapshot,
@@ -268,7 +270,6 @@ ConditionedDepth::ConditionedDepth(const Intrinsics& intrinsics,
 
 namespace {
 
-constexpr int reach = fit_window_side / 2;
 constexpr int min_samples = 9;
 
 // Separable weights along u and v. Integration averages snapshots, so that a wider window loses
@@ -343,26 +344,20 @@ std::optional<PlaneFit> fit_plane(const DepthImage& image, const std::vector<flo
   const float offset = inverse_depth[static_cast<std::size_t>(v * image.width + u)];
   WeightedPlane plane;
   int samples = 0;
-  for (int dv = -reach; dv <= reach; ++dv) {
-    for (int du = -reach; du <= reach; ++du) {
+  for (int dv = -border; dv <= border; ++dv) {
+    for (int du = -border; du <= border; ++du) {
       if (std::abs(image.at(u + du, v + dv) - z) > depth_step_limit) {
         continue;
       }
       ++samples;
-      plane.add(window[static_cast<std::size_t>(du + reach)] *
-                    window[static_cast<std::size_t>(dv + reach)],
+      plane.add(window[static_cast<std::size_t>(du + border)] *
+                    window[static_cast<std::size_t>(dv + border)],
                 static_cast<float>(du), static_cast<float>(dv),
                 inverse_depth[static_cast<std::size_t>((v + dv) * image.width + u + du)] - offset);
     }
   }
   return samples < min_samples ? std::nullopt : plane.solve(offset, samples);
 }
-
-namespace {
-
-constexpr int min_support = 5;  // of the nine readings in a window
-
-}  // namespace
 
 DepthImage remove_speckle(const DepthImage& image) {
   DepthImage kept{.width = image.width, .height = image.height, .z = {}};

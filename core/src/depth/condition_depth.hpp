@@ -10,6 +10,52 @@
 
 namespace octurn {
 
+/// A depth image in metres.
+struct DepthImage {
+  int width = 0;
+  int height = 0;
+  std::vector<float> z = {};  // row by row; 0 is no reading
+
+  float at(int u, int v) const {
+    return z[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+             static_cast<std::size_t>(u)];
+  }
+  const float* row(int v) const { return &z[static_cast<std::size_t>(v * width)]; }
+  float* row(int v) { return &z[static_cast<std::size_t>(v * width)]; }
+};
+
+/// Metres: neighbouring readings further apart lie on different surfaces.
+inline constexpr float depth_step_limit = 0.008F;
+
+/// A plane in inverse depth, 1/z = inverse_depth + slope_u du + slope_v dv around a pixel.
+///
+/// A plane in space is linear in u and v there, and a sensor that measures disparity has the same
+/// noise everywhere (Khoshelham and Elberink 2012).
+struct PlaneFit {
+  float inverse_depth = 0;  // at the pixel, 1/m
+  float slope_u = 0;        // 1/m a pixel
+  float slope_v = 0;
+  int samples = 0;  // readings that it was fitted to
+};
+
+/// Side of the window that a plane is fitted in, pixels.
+inline constexpr int fit_window_side = 5;
+
+/// 1/z of each reading, 1/m; 0 where there is none.
+std::vector<float> to_inverse_depth(const DepthImage& image);
+
+/// Fits a plane to the readings of a 5 x 5 window that lie within `depth_step_limit` of its middle,
+/// by weighted least squares.
+///
+/// @param u,v  at least two pixels inside the image, with a reading
+/// @return nothing where fewer than nine readings agree, or all lie on a line
+std::optional<PlaneFit> fit_plane(const DepthImage& image, const std::vector<float>& inverse_depth,
+                                  int u, int v);
+
+/// Drops readings without support: those with fewer than five of the nine readings in their 3 x 3
+/// window, themselves included, within `depth_step_limit`. The image's border is dropped, too.
+DepthImage remove_speckle(const DepthImage& image);
+
 /// A snapshot conditioned for integration: speckle is removed, noise is smoothed by a plane fitted
 /// at each pixel, and each surface has a weight: its inverse variance, relative to a whole window
 /// that faces the sensor at nine tenths of the depth of the platform's middle, where an object
@@ -58,51 +104,5 @@ class ConditionedDepth {
   std::vector<DepthObservation> observations_;
   DepthPyramid pyramid_;
 };
-
-/// A depth image in metres.
-struct DepthImage {
-  int width = 0;
-  int height = 0;
-  std::vector<float> z = {};  // row by row; 0 is no reading
-
-  float at(int u, int v) const {
-    return z[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
-             static_cast<std::size_t>(u)];
-  }
-  const float* row(int v) const { return &z[static_cast<std::size_t>(v * width)]; }
-  float* row(int v) { return &z[static_cast<std::size_t>(v * width)]; }
-};
-
-/// Metres: neighbouring readings further apart lie on different surfaces.
-inline constexpr float depth_step_limit = 0.008F;
-
-/// A plane in inverse depth, 1/z = inverse_depth + slope_u du + slope_v dv around a pixel.
-///
-/// A plane in space is linear in u and v there, and a sensor that measures disparity has the same
-/// noise everywhere (Khoshelham and Elberink 2012).
-struct PlaneFit {
-  float inverse_depth = 0;  // at the pixel, 1/m
-  float slope_u = 0;        // 1/m a pixel
-  float slope_v = 0;
-  int samples = 0;  // readings that it was fitted to
-};
-
-/// Side of the window that a plane is fitted in, pixels.
-inline constexpr int fit_window_side = 5;
-
-/// 1/z of each reading, 1/m; 0 where there is none.
-std::vector<float> to_inverse_depth(const DepthImage& image);
-
-/// Fits a plane to the readings of a 5 x 5 window that lie within `depth_step_limit` of its middle,
-/// by weighted least squares.
-///
-/// @param u,v  at least two pixels inside the image, with a reading
-/// @return nothing where fewer than nine readings agree, or all lie on a line
-std::optional<PlaneFit> fit_plane(const DepthImage& image, const std::vector<float>& inverse_depth,
-                                  int u, int v);
-
-/// Drops readings without support: those with fewer than five of the nine readings in their 3 x 3
-/// window, themselves included, within `depth_step_limit`. The image's border is dropped, too.
-DepthImage remove_speckle(const DepthImage& image);
 
 }  // namespace octurn

@@ -99,7 +99,7 @@ class DepthSampler {
   double max_step_;
 };
 
-std::uint16_t to_depth(double units) {
+std::uint16_t rounded_depth(double units) {
   return static_cast<std::uint16_t>(
       std::clamp(units + 0.5, 1.0, static_cast<double>(std::numeric_limits<std::uint16_t>::max())));
 }
@@ -131,7 +131,7 @@ DepthFrame rectified(DepthFrame frame, const Intrinsics& sensor, const SensorOpt
       const double x = (u - optics.cx) / optics.fx;
       const double shift = distortion.shift(x * x + y * y);
       const double depth = sample(u + optics.fx * x * shift, v + optics.fy * y * shift);
-      pinhole.depth.push_back(depth > 0 ? to_depth(depth / (1 + offset * depth)) : 0);
+      pinhole.depth.push_back(depth > 0 ? rounded_depth(depth / (1 + offset * depth)) : 0);
     }
   }
   return pinhole;

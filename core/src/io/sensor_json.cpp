@@ -239,8 +239,6 @@ double depth_unit_from(JsonObject& keys) {
 
 namespace {
 
-using nlohmann::json;
-
 constexpr double min_depth_scale = 0.5;
 constexpr double max_depth_scale = 2;
 constexpr double max_depth_offset = 1;  // 1/m: a Kinect's nearest reading is 2 1/m

@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "io/grey_png.hpp"
+#include "io/png_file.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/optics_json.hpp"

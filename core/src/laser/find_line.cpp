@@ -10,13 +10,6 @@
 namespace octurn {
 namespace {
 
-/// Links the samples of neighbouring rows to pieces of line, drops short pieces and the ends of the
-/// others, and smooths each sample's column by a quadratic fit along its piece.
-///
-/// @param samples  sorted by row, then column; not linked yet
-/// @return the remaining samples, in the same order
-std::vector<LineSample> smoothed_pieces(std::vector<LineSample> samples, const LineScale& scale);
-
 constexpr std::size_t min_rows = 6;  // of a piece
 
 /// Index of the sample in [first, end) whose column is nearest to `u`; -1 if all are farther than
@@ -128,6 +121,11 @@ std::vector<LineSample> only_kept(const std::vector<LineSample>& samples,
   return left;
 }
 
+/// Links the samples of neighbouring rows to pieces of line, drops short pieces and the ends of the
+/// others, and smooths each sample's column by a quadratic fit along its piece.
+///
+/// @param samples  sorted by row, then column; not linked yet
+/// @return the remaining samples, in the same order
 std::vector<LineSample> smoothed_pieces(std::vector<LineSample> samples, const LineScale& scale) {
   link(samples, scale.max_jump);
   std::vector<char> kept(samples.size(), 0);

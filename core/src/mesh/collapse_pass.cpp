@@ -91,6 +91,16 @@ void reorder(std::vector<Collapse>& collapses, std::vector<KeyIndex>& order) {
   }
 }
 
+constexpr std::size_t prefetch_distance = 6;  // collapses
+constexpr double min_edge_mm = 0.036;         // slicers weld vertices that are closer
+constexpr double min_normal_cosine = 0.5;     // between a triangle's normals before and after
+constexpr double max_aspect = 20;             // longest side to smallest height
+
+/// Whether one of a triangle's edges was collapsed.
+bool is_degenerate(const MeshTriangle& triangle) {
+  return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
+}
+
 }  // namespace
 
 // By the upper half of the bits of their costs, which order as the costs do, as these are not
@@ -159,20 +169,6 @@ VertexStrips make_strips(std::span<const MeshVertex> vertices, std::size_t axis,
   });
   return strips;
 }
-
-namespace {
-
-constexpr std::size_t prefetch_distance = 6;  // collapses
-constexpr double min_edge_mm = 0.036;         // slicers weld vertices that are closer
-constexpr double min_normal_cosine = 0.5;     // between a triangle's normals before and after
-constexpr double max_aspect = 20;             // longest side to smallest height
-
-/// Whether one of a triangle's edges was collapsed.
-bool is_degenerate(const MeshTriangle& triangle) {
-  return triangle[0] == triangle[1] || triangle[1] == triangle[2] || triangle[2] == triangle[0];
-}
-
-}  // namespace
 
 /// What one thread does among others: the collapses between vertices of one strip.
 class CollapsePass::Strip {

@@ -62,8 +62,6 @@ NearestPoints::NearestPoints(std::vector<SurfacePoint> points) : points_(std::mo
 
 namespace {
 
-using Eigen::Vector3d;
-
 constexpr double margin = 0.010;  // metres around the points
 
 bool any_contradicts(std::span<const PlacedTurn> turns,

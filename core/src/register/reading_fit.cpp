@@ -236,8 +236,6 @@ ReadingFit fit_readings(std::span<const PlacedTurn> placed, const SeenTurn& turn
 
 namespace {
 
-using Eigen::Vector3d;
-
 constexpr double max_gap = 0.012;          // metres between foot and platform before the fit
 constexpr double min_facing = 0.99;        // cosine between the foot's normal and straight down
 constexpr double min_area_cells = 100;     // of 2 mm: 4 cm2

@@ -20,6 +20,8 @@ constexpr double lever = 0.05;      // metres
 // share of the total weight; rotations are damped by their motion at the lever.
 constexpr double damping = 1e-4;
 
+constexpr double min_breadth = 0.003;  // metres, rms: the rotation about a line of points is free
+
 }  // namespace
 
 void RigidFit::add(const Vector3d& point, const Vector3d& normal, double distance,
@@ -83,14 +85,6 @@ double motion_length(const Eigen::Isometry3d& motion, const Vector3d& middle) {
   const Vector3d shift = motion * middle - middle;
   return shift.norm() + lever * Eigen::AngleAxisd(motion.linear()).angle();
 }
-
-namespace {
-
-using Eigen::Vector3d;
-
-constexpr double min_breadth = 0.003;  // metres, rms: the rotation about a line of points is free
-
-}  // namespace
 
 std::optional<Eigen::Isometry3d> pose_from_pairs(std::span<const PointPair> pairs) {
   const auto count = static_cast<double>(std::max<std::size_t>(pairs.size(), 1));

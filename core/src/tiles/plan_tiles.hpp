@@ -9,7 +9,7 @@
 
 namespace octurn {
 
-/// The memory of tiles, for the memory limit.
+// The memory of tiles, for the memory limit.
 
 /// The memory of a tile with this number of occupied bricks, bytes.
 std::size_t tile_bytes(const ReconstructOptions& options, std::uint64_t bricks);

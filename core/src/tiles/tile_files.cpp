@@ -203,8 +203,6 @@ std::vector<std::byte> StoredTile::bricks(std::size_t first, std::size_t count) 
 
 namespace {
 
-using nlohmann::json;
-
 constexpr ErrorCode malformed = ErrorCode::scan_malformed;
 
 /// The options on which a plan depends.

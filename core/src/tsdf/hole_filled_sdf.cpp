@@ -1,4 +1,3 @@
-// The signs of a field whose holes are filled.
 #include "tsdf/hole_filled_sdf.hpp"
 
 #include <algorithm>

@@ -30,10 +30,6 @@ struct CubeLayer {
   std::vector<std::uint8_t> ambiguous = {};
 };
 
-/// The cubes between the layers z and z + 1 of a mask. Voxels outside the mask are outside the
-/// object.
-CubeLayer mixed_cubes(const VoxelMask& inside, int z);
-
 using Row = std::span<const std::uint64_t>;
 
 /// Adds the cubes that the surface crosses, of 64 along x.
@@ -68,6 +64,8 @@ void add_mixed(const std::array<Row, 4>& rows, std::size_t word, int y, int widt
   }
 }
 
+/// The cubes between the layers z and z + 1 of a mask. Voxels outside the mask are outside the
+/// object.
 CubeLayer mixed_cubes(const VoxelMask& inside, int z) {
   CubeLayer layer;
   const Index3& voxels = inside.size();

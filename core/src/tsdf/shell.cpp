@@ -13,6 +13,11 @@ double voxel_side(const ReconstructOptions& options) {
   return options.root_size / (1 << checked_levels(options));
 }
 
+std::size_t table_size(const Index3& size) {
+  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
+         static_cast<std::size_t>(size.z);
+}
+
 }  // namespace
 
 double shell_thickness(const ReconstructOptions& options) {
@@ -40,15 +45,6 @@ bool make_shell(const CompactBrick& from, ShellBrick& shell) {
   }
   return any_near;
 }
-
-namespace {
-
-std::size_t table_size(const Index3& size) {
-  return static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) *
-         static_cast<std::size_t>(size.z);
-}
-
-}  // namespace
 
 ShellField::ShellField(double root_side, double voxel_side, const Index3& low, const Index3& size)
     : root_side_(root_side),

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <limits>
-#include <stop_token>
 #include <vector>
 
 #include "octurn/reconstruct.hpp"
@@ -17,9 +16,9 @@
 
 namespace octurn {
 
-/// The shell that the method `solid` makes of a space: it reaches from the observed surface to a
-/// thickness behind it, because the other side of a wall is unknown. Where nothing was observed
-/// there is no shell.
+// The shell that the method `solid` makes of a space: it reaches from the observed surface to a
+// thickness behind it, because the other side of a wall is unknown. Where nothing was observed
+// there is no shell.
 
 /// 8 x 8 x 8 voxels in the order of `TsdfBrick`: distances to the shell's surface in ticks,
 /// negative inside; `not_observed` where nothing was.
@@ -33,16 +32,16 @@ struct ShellBrick {
 inline constexpr int shell_voxel_ticks = VoxelGrid::ticks / 4;
 inline constexpr int shell_thickness_voxels = 2;
 
+/// Metres: depth at which a whole window of readings has the weight 1, for a hand-held sensor in a
+/// room. An observed surface needs a tenth of that weight.
+inline constexpr double shell_reference_depth = 3.0;
+
 /// The grid of a tile, in the frame in which it is the root cube.
 VoxelGrid make_shell_grid(const ReconstructOptions& options);
 
 /// Makes the shell in a brick of a TSDF.
 /// @return whether any voxel is inside, or next to one that may be
 bool make_shell(const CompactBrick& from, ShellBrick& shell);
-
-/// Metres: depth at which a whole window of readings has the weight 1, for a hand-held sensor in a
-/// room. An observed surface needs a tenth of that weight.
-inline constexpr double shell_reference_depth = 3.0;
 
 /// The signed distances of a box of bricks of a shell; missing bricks are outside. Voxels are
 /// indexed as in a `TileLattice`.

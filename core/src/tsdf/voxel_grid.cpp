@@ -24,6 +24,9 @@ int block_voxels_for(double voxel_side, double truncation) {
   return voxels;
 }
 
+constexpr double min_truncation_voxels = 2.5;
+constexpr double foot_room = 1.5;  // truncations below the platform of the first of several poses
+
 }  // namespace
 
 VoxelGrid::VoxelGrid(double root_side, int levels, const Box& clip, double truncation, int below)
@@ -93,13 +96,6 @@ Index3 PlatformCut::raised(const Index3& voxel, float to_height) const {
   };
   return {moved(voxel.x, 0), moved(voxel.y, 1), moved(voxel.z, 2)};
 }
-
-namespace {
-
-constexpr double min_truncation_voxels = 2.5;
-constexpr double foot_room = 1.5;  // truncations below the platform of the first of several poses
-
-}  // namespace
 
 VoxelGrid make_solid_grid(const ReconstructOptions& options) {
   const int levels = checked_levels(options);

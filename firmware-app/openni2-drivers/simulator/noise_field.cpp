@@ -13,6 +13,9 @@ constexpr int picture_width = 640;
 /// Share of the variance that is independent of the neighbours.
 constexpr double own_share = 0.15;
 
+constexpr std::size_t noise_samples = std::size_t{1} << 17U;
+constexpr std::uint32_t terms = 12;  // of a sum of uniform numbers, whose variance is then 1
+
 }  // namespace
 
 std::uint32_t mixed(std::uint32_t seed, std::uint32_t number) {
@@ -67,13 +70,6 @@ std::span<const std::int8_t> NoiseField::row(std::uint32_t part, int v) const {
   const int first = (v + down) % height * width + aside;
   return std::span(values_).subspan(static_cast<std::size_t>(first), picture_width);
 }
-
-namespace {
-
-constexpr std::size_t noise_samples = std::size_t{1} << 17U;
-constexpr std::uint32_t terms = 12;  // of a sum of uniform numbers, whose variance is then 1
-
-}  // namespace
 
 WhiteNoise::WhiteNoise(std::uint32_t seed) : values_(noise_samples) {
   for (std::size_t i = 0; i < noise_samples; ++i) {

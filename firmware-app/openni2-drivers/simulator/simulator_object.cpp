@@ -110,7 +110,6 @@ Eigen::AlignedBox3d simulator_object_bounds() {
 
 namespace {
 
-using Eigen::Vector3d;
 using Eigen::Vector3i;
 
 /// The signed distance at the corners of a lattice of cells. In a block of cells without surface

@@ -23,6 +23,16 @@ auto find_row(const DepthFrame& frame, int v) {
   return frame.depth.begin() + static_cast<std::ptrdiff_t>(v) * frame.width;
 }
 
+using nlohmann::json;
+
+void append(json& list, const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& pose) {
+  const auto tenths = [](double metres) { return std::round(10 * mm_from_metres(metres)) / 10; };
+  for (const Eigen::Vector3f& point : points) {
+    const Eigen::Vector3d at = pose * point.cast<double>();
+    list.push_back({tenths(at.x()), tenths(at.y()), tenths(at.z())});
+  }
+}
+
 }  // namespace
 
 KeptFrames::KeptFrames(std::size_t count, std::size_t max_bytes)
@@ -418,20 +428,6 @@ void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_tok
     share_rig(turns);
   }
 }
-
-namespace {
-
-using nlohmann::json;
-
-void append(json& list, const std::vector<Eigen::Vector3f>& points, const Eigen::Isometry3d& pose) {
-  const auto tenths = [](double metres) { return std::round(10 * mm_from_metres(metres)) / 10; };
-  for (const Eigen::Vector3f& point : points) {
-    const Eigen::Vector3d at = pose * point.cast<double>();
-    list.push_back({tenths(at.x()), tenths(at.y()), tenths(at.z())});
-  }
-}
-
-}  // namespace
 
 void write_pose_points(const std::filesystem::path& folder, const std::vector<StoredTurn>& turns,
                        const std::vector<std::vector<Eigen::Vector3f>>& points) {

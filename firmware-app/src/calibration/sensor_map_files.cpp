@@ -21,6 +21,10 @@ constexpr int block = 8;  // pixels per side: the error pattern has a wavelength
 constexpr std::string_view allowed =
     "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-";
 
+using nlohmann::json;
+
+double to_units(double inverse_depth) { return inverse_depth / disparity_unit; }
+
 }  // namespace
 
 std::filesystem::path sensor_map_path(const std::filesystem::path& data, std::string_view serial) {
@@ -87,14 +91,6 @@ void keep_sensor_map(const std::filesystem::path& data, std::string_view serial,
     write_file(folder / sensor_map_file, *map);
   }
 }
-
-namespace {
-
-using nlohmann::json;
-
-double to_units(double inverse_depth) { return inverse_depth / disparity_unit; }
-
-}  // namespace
 
 json to_json(const SensorMapReport& report) {
   json walls = json::array();

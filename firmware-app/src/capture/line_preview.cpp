@@ -23,6 +23,8 @@ ReconstructOptions coarse(ReconstructOptions options) {
   return options;
 }
 
+constexpr double min_coverage = 0.6;  // of the readings at the first stop
+
 }  // namespace
 
 LinePreview::LinePreview(const std::filesystem::path& folder, ReconstructOptions options, int stops,
@@ -71,12 +73,6 @@ void LinePreview::add_lines(const Scan& scan, std::size_t first, std::size_t end
   }
   observer_.on_added(*reconstruction_, static_cast<int>(scan.shots.size()));
 }
-
-namespace {
-
-constexpr double min_coverage = 0.6;  // of the readings at the first stop
-
-}  // namespace
 
 std::ptrdiff_t readings_in(const DepthFrame& frame) {
   return std::ranges::count_if(frame.depth, [](std::uint16_t depth) { return depth > 0; });

@@ -41,9 +41,6 @@ namespace {
 /// @param show  called again and again to draw the progress
 /// @return      the ended run
 CalibrationRun follow_calibration(Scanner& scanner, const std::stop_token& stop,
-                                  void (*show)(ProgressBar& bar, const CalibrationRun& run));
-
-CalibrationRun follow_calibration(Scanner& scanner, const std::stop_token& stop,
                                   void (*show)(ProgressBar& bar, const CalibrationRun& run)) {
   using namespace std::chrono_literals;
   ProgressBar bar;

@@ -2,11 +2,13 @@
 
 #include <sys/utsname.h>
 
+#include <filesystem>
 #include <iomanip>
 #include <iostream>
 #include <vector>
 
 #include "capture/plan.hpp"
+#include "commands/commands.hpp"
 #include "doctor/machine_checks.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
@@ -14,8 +16,10 @@
 #include "octurn/sensor_map.hpp"
 #include "octurn/units.hpp"
 #include "progress_bar.hpp"
+#include "rig/kinect_device.hpp"
 #include "rig/usb_log.hpp"
 #include "sensor/new_folder.hpp"
+#include "sensor/packet_logger.hpp"
 #include "sensor/recording.hpp"
 #include "signal_stop.hpp"
 #include "version.hpp"
@@ -24,6 +28,24 @@ namespace octurn {
 namespace {
 
 using Clock = std::chrono::steady_clock;
+
+/// Records what comes from a Kinect over USB, while somebody reads its frames.
+class UsbRecording {
+ public:
+  /// Begins. @param sensor  outlives this object
+  /// @throws Error "sensor-other"  if the sensor is no Kinect
+  /// @throws Error "write-failed"  if the file could not be written later
+  UsbRecording(DepthSensor& sensor, const RecordArguments& arguments);
+
+  /// Writes the file, and one line to standard output that sums it up.
+  void write();
+
+ private:
+  DepthSensor& sensor_;
+  PacketLogger* logger_;  // the same sensor
+  std::filesystem::path file_;
+  std::optional<PacketCounts> before_;
+};
 
 constexpr int usual_stop_frames = 10;
 
@@ -40,6 +62,8 @@ TimedFrame settled_frame(DepthSensor& sensor, Clock::time_point settled,
     }
   }
 }
+
+constexpr int usual_wall_frames = 25;  // more frames do not lower the noise of the map
 
 }  // namespace
 
@@ -91,12 +115,6 @@ void record(const RecordArguments& arguments) {
     usb->write();
   }
 }
-
-namespace {
-
-constexpr int usual_wall_frames = 25;  // more frames do not lower the noise of the map
-
-}  // namespace
 
 void record_wall(const RecordArguments& arguments) {
   const Config config = make_config(arguments.config);

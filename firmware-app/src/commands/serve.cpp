@@ -102,8 +102,6 @@ void StartRecord::forget() {
   }
 }
 
-using namespace std::chrono_literals;
-
 /// URL of the page for a browser on this machine.
 std::string page_address(const HttpOptions& options, int port) {
   const bool any = options.address == "0.0.0.0" || options.address == "::";

@@ -173,8 +173,6 @@ json merged(json values, const json& change) {
 
 namespace {
 
-using nlohmann::json;
-
 /// Applies the options of the command line to a configuration.
 Config with_options(Config config, const json& given) {
   JsonObject keys(given, ErrorCode::bad_settings, "");

@@ -194,8 +194,6 @@ Finding check_clock(const fs::path& root, std::chrono::system_clock::time_point 
 
 namespace {
 
-namespace fs = std::filesystem;
-
 constexpr Check usb{"usb", "USB"};
 constexpr Check gpio_permission{"gpio-permission", "GPIO permission"};
 constexpr Check data_folder{"data-folder", "Folder of the scans"};
@@ -306,8 +304,6 @@ Finding check_real_time(const std::string& refusal) {
                                      " in the service, or rtprio in limits.conf: else a busy "
                                      "machine turns the platform slowly.");
 }
-
-namespace fs = std::filesystem;
 
 std::vector<fs::path> entries(const fs::path& folder) {
   std::vector<fs::path> found;

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <optional>
+#include <span>
 #include <utility>
+#include <variant>
 
 #include "http/file_response.hpp"
 #include "http/handlers/appliance.hpp"
@@ -23,7 +25,30 @@
 #include "log.hpp"
 
 namespace octurn {
+
+/// A handler takes only what it needs: the request, and the variable parts of its path.
+using Handler =
+    std::variant<Response (*)(App&), Response (*)(App&, const Request&),
+                 Response (*)(EventFeed&, const Request&), Response (*)(App&, std::string_view id),
+                 Response (*)(App&, const Request&, std::string_view id),
+                 Response (*)(App&, std::string_view id, std::string_view number),
+                 Response (*)(App&, const Request&, std::string_view id, std::string_view number)>;
+
+/// What a handler may wait for, up to some seconds: a frame of the sensor, or the start of devices.
+enum class WaitsFor { nothing, look, start };
+
+/// The handler of a method and a path, with `{id}` and `{number}` for its variable parts.
+struct Route {
+  std::string_view method;
+  std::string_view path;
+  Handler handler;
+  WaitsFor waits_for = WaitsFor::nothing;
+};
+
 namespace {
+
+// The path whose body is an upload, beside the archives of scans.
+inline constexpr std::string_view update_path = "/api/v1/update";
 
 constexpr const char* retry_after = "2";  // seconds: a file of a small model is made meanwhile
 
@@ -111,77 +136,6 @@ Response wrong_method(const Request& request, const std::string& allowed) {
                                .hint = "It takes " + allowed + "."});
   response.headers.emplace_back("Allow", allowed);
   return response;
-}
-
-}  // namespace
-
-Api::Api(App app) : app_(std::move(app)), events_(StatusNews(app_)) {
-  app_.webhooks = std::make_unique<WebhookSender>(
-      app_.addresses, [this, news = ScanNews()]() mutable { return news.next(app_); });
-}
-
-Response Api::answer(const Request& request) {
-  try {
-    const std::string_view body_type = request.path == update_path || request.path == import_path
-                                           ? upload_type
-                                           : "application/json";
-    const auto refused = refusal(request, app_.settings.config().host_names, body_type);
-    return refused ? problem(*refused) : packed(request, tagged(request, dispatch(request)));
-  } catch (const Error& error) {
-    return to_problem(error);
-  } catch (const std::exception& error) {
-    log::error("http", request.method + " " + request.path + ": " + error.what());
-    return problem(
-        {.code = ErrorCode::internal, .detail = error.what(), .hint = "Please report this."});
-  }
-}
-
-std::vector<RouteName> Api::routes() {
-  std::vector<RouteName> names;
-  for (const std::span<const Route> part : {scan_routes(), other_routes()}) {
-    for (const Route& route : part) {
-      names.push_back({.method = route.method, .path = route.path});
-    }
-  }
-  return names;
-}
-
-/// The semaphore that limits requests which wait as this route does; null: the route does not wait.
-std::counting_semaphore<>* Api::places_for(const Route& route) {
-  switch (route.waits_for) {
-    case WaitsFor::look:
-      return &looks_;
-    case WaitsFor::start:
-      return &starts_;
-    case WaitsFor::nothing:
-      break;
-  }
-  return nullptr;
-}
-
-Response Api::dispatch(const Request& request) {
-  const std::string_view method = request.is_read() ? std::string_view("GET") : request.method;
-  std::string allowed;
-  for (const std::span<const Route> part : {scan_routes(), other_routes()}) {
-    for (const Route& route : part) {
-      const auto parts = match(route.path, request.path);
-      if (parts && route.method == method) {
-        const Place place(places_for(route), "others are waiting for the devices");
-        return std::visit(Call{app_, events_, request, *parts}, route.handler);
-      }
-      if (parts) {
-        allow(route.method, allowed);
-      }
-    }
-  }
-  if (allowed.empty() && request.is_read() && !request.path.starts_with("/api/")) {
-    return app_.page.file(request);
-  }
-  if (allowed.empty()) {
-    throw Error(ErrorCode::not_found, "there is no " + request.path,
-                "Check the address. Those of this version begin with /api/v1/.");
-  }
-  return wrong_method(request, allowed);
 }
 
 std::span<const Route> scan_routes() {
@@ -274,6 +228,77 @@ std::span<const Route> other_routes() {
       Route{"PUT", "/api/v1/wifi", join_wifi},
   };
   return all;
+}
+
+}  // namespace
+
+Api::Api(App app) : app_(std::move(app)), events_(StatusNews(app_)) {
+  app_.webhooks = std::make_unique<WebhookSender>(
+      app_.addresses, [this, news = ScanNews()]() mutable { return news.next(app_); });
+}
+
+Response Api::answer(const Request& request) {
+  try {
+    const std::string_view body_type = request.path == update_path || request.path == import_path
+                                           ? upload_type
+                                           : "application/json";
+    const auto refused = refusal(request, app_.settings.config().host_names, body_type);
+    return refused ? problem(*refused) : packed(request, tagged(request, dispatch(request)));
+  } catch (const Error& error) {
+    return to_problem(error);
+  } catch (const std::exception& error) {
+    log::error("http", request.method + " " + request.path + ": " + error.what());
+    return problem(
+        {.code = ErrorCode::internal, .detail = error.what(), .hint = "Please report this."});
+  }
+}
+
+std::vector<RouteName> Api::routes() {
+  std::vector<RouteName> names;
+  for (const std::span<const Route> part : {scan_routes(), other_routes()}) {
+    for (const Route& route : part) {
+      names.push_back({.method = route.method, .path = route.path});
+    }
+  }
+  return names;
+}
+
+/// The semaphore that limits requests which wait as this route does; null: the route does not wait.
+std::counting_semaphore<>* Api::places_for(const Route& route) {
+  switch (route.waits_for) {
+    case WaitsFor::look:
+      return &looks_;
+    case WaitsFor::start:
+      return &starts_;
+    case WaitsFor::nothing:
+      break;
+  }
+  return nullptr;
+}
+
+Response Api::dispatch(const Request& request) {
+  const std::string_view method = request.is_read() ? std::string_view("GET") : request.method;
+  std::string allowed;
+  for (const std::span<const Route> part : {scan_routes(), other_routes()}) {
+    for (const Route& route : part) {
+      const auto parts = match(route.path, request.path);
+      if (parts && route.method == method) {
+        const Place place(places_for(route), "others are waiting for the devices");
+        return std::visit(Call{app_, events_, request, *parts}, route.handler);
+      }
+      if (parts) {
+        allow(route.method, allowed);
+      }
+    }
+  }
+  if (allowed.empty() && request.is_read() && !request.path.starts_with("/api/")) {
+    return app_.page.file(request);
+  }
+  if (allowed.empty()) {
+    throw Error(ErrorCode::not_found, "there is no " + request.path,
+                "Check the address. Those of this version begin with /api/v1/.");
+  }
+  return wrong_method(request, allowed);
 }
 
 }  // namespace octurn

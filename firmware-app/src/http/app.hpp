@@ -6,7 +6,7 @@
 #include "config/config_store.hpp"
 #include "doctor/doctor.hpp"
 #include "doctor/machine_checks.hpp"
-#include "doctor/turn_checks.hpp"
+#include "doctor/turntable_runner.hpp"
 #include "http/access_keys.hpp"
 #include "http/page.hpp"
 #include "outgoing/address_book.hpp"

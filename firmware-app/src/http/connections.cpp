@@ -88,6 +88,14 @@ std::vector<int> open_descriptors() {
   return descriptors;
 }
 
+using Clock = std::chrono::steady_clock;
+
+// Polling interval of the debts, short relative to a patience of seconds.
+constexpr std::chrono::milliseconds tick(100);
+
+// Polling interval while there are too many connections, as clients in the queue wait for it.
+constexpr std::chrono::milliseconds crowded_tick(10);
+
 }  // namespace
 
 std::vector<AcceptedSocket> accepted_sockets(int local_port) {
@@ -321,18 +329,6 @@ ConnectionTable::Connection* ConnectionTable::worst(Time now) {
     return std::pair(held[connection->socket.address], -connection->since.time_since_epoch());
   });
 }
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// Polling interval of the debts, short relative to a patience of seconds.
-constexpr std::chrono::milliseconds tick(100);
-
-// Polling interval while there are too many connections, as clients in the queue wait for it.
-constexpr std::chrono::milliseconds crowded_tick(10);
-
-}  // namespace
 
 ConnectionGuard::ConnectionGuard(int port, const ConnectionLimits& limits)
     : port_(port), table_(limits), watch_([this](const std::stop_token& stop) { watch(stop); }) {}

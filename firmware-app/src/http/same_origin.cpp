@@ -70,6 +70,9 @@ bool has_type(const Request& request, std::string_view body_type) {
              : is_of_type(type.value_or(""), body_type) || (!type && !has_body(request));
 }
 
+/// The page's address in the hotspot, as in image-build's hotspot.network.
+constexpr const char* page_address = "http://192.168.77.1/";
+
 }  // namespace
 
 bool is_own_host(std::string_view host, std::span<const std::string> host_names) {
@@ -110,13 +113,6 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
   }
   return std::nullopt;
 }
-
-namespace {
-
-/// The page's address in the hotspot, as in image-build's hotspot.network.
-constexpr const char* page_address = "http://192.168.77.1/";
-
-}  // namespace
 
 std::optional<Response> captive_answer(const Request& request,
                                        std::span<const std::string> host_names,

@@ -64,8 +64,6 @@ void for_each_scan(const App& app, const std::function<void(json)>& show) {
 
 namespace {
 
-using nlohmann::json;
-
 WebhookEvent make_event(const std::string& name, const char* key, const json& about) {
   json body{{"event", name},
             {"scanner", host_name()},

@@ -81,6 +81,8 @@ std::string reason_in(const std::string& body) {
   return is_one_line(*reason) ? *reason : "";
 }
 
+constexpr int bad_request = 400;
+
 }  // namespace
 
 std::string printer_file_name(std::string name) {
@@ -189,12 +191,6 @@ std::optional<PrinterTrouble> trouble_in(const Printer& printer, const OutgoingA
       return PrinterTrouble{answered, "Look into its own log, and try again."};
   }
 }
-
-namespace {
-
-constexpr int bad_request = 400;
-
-}  // namespace
 
 std::string_view to_string(PrinterUpload::State state) {
   switch (state) {

@@ -15,6 +15,18 @@ constexpr std::size_t stops_of_pace = 5;
 constexpr std::size_t min_stops_of_pace = 2;
 constexpr double max_rise = 1.1;
 
+using Clock = Status::Clock;
+
+bool is_ready(const DeviceStatus& device) { return device.state == DeviceStatus::State::ready; }
+
+void set_failed(DeviceStatus& device, const Failure& failure) {
+  if (device.failure.detail != failure.detail) {
+    log::warning("scanner", failure.detail);
+  }
+  device.state = failure.is_absence() ? DeviceStatus::State::missing : DeviceStatus::State::failed;
+  device.failure = failure;
+}
+
 }  // namespace
 
 Seconds ExpectedEnd::left(Clock::time_point now) const {
@@ -73,22 +85,6 @@ void TimeLeft::tell(Seconds left, Seconds later, Clock::time_point now) {
   expected_ = {.end = now + std::chrono::duration_cast<Clock::duration>(left),
                .later = std::min(later, left)};
 }
-
-namespace {
-
-using Clock = Status::Clock;
-
-bool is_ready(const DeviceStatus& device) { return device.state == DeviceStatus::State::ready; }
-
-void set_failed(DeviceStatus& device, const Failure& failure) {
-  if (device.failure.detail != failure.detail) {
-    log::warning("scanner", failure.detail);
-  }
-  device.state = failure.is_absence() ? DeviceStatus::State::missing : DeviceStatus::State::failed;
-  device.failure = failure;
-}
-
-}  // namespace
 
 nlohmann::json to_json(const DeviceStatus& device) {
   constexpr std::array<std::string_view, 4> states{"unknown", "ready", "missing", "failed"};

@@ -28,6 +28,8 @@ Access optional_pose(std::optional<Eigen::Isometry3d>& value) {
           .schema = {{"type", "array"}, {"items", row}}};
 }
 
+constexpr std::string_view id_form = "00000000-000000-xxxx";
+
 }  // namespace
 
 std::vector<Field> fields(BuildSettings& settings, const SettingRanges& ranges) {
@@ -207,12 +209,6 @@ void write_label(const fs::path& folder, const LabelChange& change) {
     write_file(folder / notes_file, *change.notes);
   }
 }
-
-namespace {
-
-constexpr std::string_view id_form = "00000000-000000-xxxx";
-
-}  // namespace
 
 bool is_scan_id(std::string_view text) {
   return std::ranges::equal(text, id_form, [](char c, char form) {

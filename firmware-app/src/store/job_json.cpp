@@ -28,6 +28,8 @@ std::optional<Quality> quality_from(const std::optional<JsonValue>& object) {
   return !object || object->json().is_null() ? std::nullopt : std::optional(to_quality(*object));
 }
 
+constexpr double stored_normal_tolerance = 1e-4;  // rounding of decimals in a file
+
 }  // namespace
 
 json to_json(const Model& model) {
@@ -76,8 +78,6 @@ Model to_model(const JsonValue& object) {
 }
 
 namespace {
-
-using nlohmann::json;
 
 constexpr int max_stop = std::numeric_limits<int>::max();
 
@@ -208,12 +208,6 @@ ScanCalibration to_scan_calibration(const JsonValue& object) {
   return calibration;
 }
 
-namespace {
-
-constexpr double stored_normal_tolerance = 1e-4;  // rounding of decimals in a file
-
-}  // namespace
-
 nlohmann::json planes_to_json(const std::vector<Laser>& lasers) {
   nlohmann::json list = nlohmann::json::array();
   for (const Laser& laser : lasers) {
@@ -287,8 +281,6 @@ Parameters to_parameters(const std::optional<JsonValue>& object) {
 }
 
 namespace {
-
-using nlohmann::json;
 
 constexpr std::array verdicts{Verdict::good, Verdict::look, Verdict::bad};
 
@@ -372,8 +364,6 @@ double number_or_zero(JsonObject& keys, std::string_view key, double max) {
 }
 
 namespace {
-
-using nlohmann::json;
 
 RegistrationCandidate to_candidate(const JsonValue& object) {
   JsonObject keys(object);

@@ -16,6 +16,16 @@
 
 namespace octurn {
 
+/// The limit of numbers that have none.
+inline constexpr double unlimited = std::numeric_limits<double>::max();
+
+/// Rounds to three decimals, the precision of seconds, millimetres and fractions in JSON.
+double to_thousandths(double value);
+
+/// Reads the number of an optional key, from 0 to `max`; 0 if it is missing or null.
+/// @throws Error  if it is not a number, or out of range
+double number_or_zero(JsonObject& keys, std::string_view key, double max);
+
 /// JSON of a model, for the API, `job.json` and `build.json`.
 nlohmann::json to_json(const Model& model);
 
@@ -65,16 +75,6 @@ nlohmann::json to_json(const Quality& quality);
 
 /// Parses that JSON. @throws Error  with the code of `object`
 Quality to_quality(const JsonValue& object);
-
-/// The limit of numbers that have none.
-inline constexpr double unlimited = std::numeric_limits<double>::max();
-
-/// Rounds to three decimals, the precision of seconds, millimetres and fractions in JSON.
-double to_thousandths(double value);
-
-/// Reads the number of an optional key, from 0 to `max`; 0 if it is missing or null.
-/// @throws Error  if it is not a number, or out of range
-double number_or_zero(JsonObject& keys, std::string_view key, double max);
 
 /// JSON of a registration's candidate, for the API and `job.json`: its pose in metres, its residual
 /// in millimetres.

@@ -45,6 +45,10 @@ bool is_same_camera(const LaserCamera& one, const LaserCamera& other) {
          std::ranges::equal(one.lasers, other.lasers, {}, &Laser::name, &Laser::name);
 }
 
+// Memory for each snapshot in addition to the reconstruction.
+constexpr std::size_t check_bytes = 100'000;
+constexpr std::size_t calibration_bytes = 350'000;
+
 }  // namespace
 
 bool have_same_sensor(const Scan& one, const Scan& other) {
@@ -149,14 +153,6 @@ ModelScan scan_of_model(const ScanStore& store, const Job& job, int build) {
   }
   return of;
 }
-
-namespace {
-
-// Memory for each snapshot in addition to the reconstruction.
-constexpr std::size_t check_bytes = 100'000;
-constexpr std::size_t calibration_bytes = 350'000;
-
-}  // namespace
 
 ReconstructOptions checked_options(const ScanSettings& settings, const Limits& limits,
                                    std::size_t snapshots) {

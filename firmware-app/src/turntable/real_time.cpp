@@ -20,6 +20,8 @@ cpu_set_t cores_of_this_thread() {
 // The kernel's refusal leaves the thread where it was, which is no failure.
 void use_cores(const cpu_set_t& cores) { ::sched_setaffinity(0, sizeof cores, &cores); }
 
+using Clock = std::chrono::steady_clock;
+
 }  // namespace
 
 int ask_for_real_time_priority() {
@@ -71,12 +73,6 @@ void give_up_real_time_priority() {
   const sched_param parameters{.sched_priority = 0};
   ::pthread_setschedparam(::pthread_self(), SCHED_OTHER, &parameters);
 }
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-}  // namespace
 
 Lateness measure_wake_ups(int count, std::chrono::microseconds interval) {
   Lateness lateness;

@@ -17,6 +17,8 @@ namespace {
 
 constexpr double time_step = 1e-4;  // a bare rotor swings 100 times a second
 
+constexpr double tick_time = 0.01;  // real seconds
+
 }  // namespace
 
 LoadedMotor::LoadedMotor(const PlatformLoad& load, double angle)
@@ -39,12 +41,6 @@ void LoadedMotor::advance(double seconds) {
     angle_ += speed_ * time_step;
   }
 }
-
-namespace {
-
-constexpr double tick_time = 0.01;  // real seconds
-
-}  // namespace
 
 /// The pulses of a move. Times are simulated seconds since its beginning.
 struct SimulatedTurntable::Move {

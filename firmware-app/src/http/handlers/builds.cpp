@@ -46,6 +46,14 @@ bool take_choice(json& body) {
   return chooses;
 }
 
+/// Parses a pose's number; 0, which no pose has, if the text is no number.
+int to_pose_number(std::string_view text) {
+  int number = 0;
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, number);
+  return read.ec == std::errc() && read.ptr == end ? number : 0;
+}
+
 }  // namespace
 
 Response list_builds(App& app, std::string_view id) {
@@ -113,18 +121,6 @@ Response send_build_model(App& app, const Request& request, std::string_view id,
       download_name(find_scan(app, id), "-" + std::string(build).append(".stl"));
   return file_response(request, find_build_model(app, id, build), "model/stl", name);
 }
-
-namespace {
-
-/// Parses a pose's number; 0, which no pose has, if the text is no number.
-int to_pose_number(std::string_view text) {
-  int number = 0;
-  const char* const end = text.data() + text.size();
-  const auto read = std::from_chars(text.data(), end, number);
-  return read.ec == std::errc() && read.ptr == end ? number : 0;
-}
-
-}  // namespace
 
 Response list_poses(App& app, std::string_view id) {
   find_scan(app, id);  // throws if there is no such scan

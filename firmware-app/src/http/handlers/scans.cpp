@@ -44,6 +44,15 @@ void drop_places(json& model) {
   }
 }
 
+std::string to_text(ScanTime time) {
+  return utc_text(std::chrono::floor<std::chrono::seconds>(time), rfc3339);
+}
+
+/// Whether a scan in another pose is in the bin together with its first scan.
+bool is_with_another(const ScanBin& bin, const Job& job) {
+  return job.pose_of && bin.find(job.pose_of->scan);
+}
+
 }  // namespace
 
 Response list_scans(App& app) {
@@ -142,21 +151,6 @@ Response resume_scan(App& app, std::string_view id) {
   }
   return json_response(to_json(app, find_scan(app, id)), 202);
 }
-
-namespace {
-
-using nlohmann::json;
-
-std::string to_text(ScanTime time) {
-  return utc_text(std::chrono::floor<std::chrono::seconds>(time), rfc3339);
-}
-
-/// Whether a scan in another pose is in the bin together with its first scan.
-bool is_with_another(const ScanBin& bin, const Job& job) {
-  return job.pose_of && bin.find(job.pose_of->scan);
-}
-
-}  // namespace
 
 Response send_bin(App& app) {
   json scans = json::array();

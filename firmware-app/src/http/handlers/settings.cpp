@@ -55,6 +55,14 @@ json model_formats() {
   return names;
 }
 
+/// A key without its hash.
+json to_json(const AccessKey& key) {
+  return {{"id", key.id},
+          {"name", key.name},
+          {"access", to_string(key.access)},
+          {"created", key.created}};
+}
+
 }  // namespace
 
 Response send_settings(App& app) {
@@ -115,20 +123,6 @@ Response set_page_password(App& app, const Request& request) {
   log::info("settings", "the page's password was changed");
   return send_settings(app);
 }
-
-namespace {
-
-using nlohmann::json;
-
-/// A key without its hash.
-json to_json(const AccessKey& key) {
-  return {{"id", key.id},
-          {"name", key.name},
-          {"access", to_string(key.access)},
-          {"created", key.created}};
-}
-
-}  // namespace
 
 Response list_keys(App& app) {
   json all = json::array();

@@ -97,8 +97,6 @@ Response send_depth_picture(App& app) {
 
 namespace {
 
-using nlohmann::json;
-
 constexpr std::size_t max_lines = 200;
 
 /// The last `max_lines` lines of a text.

@@ -1,8 +1,9 @@
+#include "octurn/reconstruct.hpp"
+
 #include <memory>
 
 #include "bennett/bennett_reconstructor.hpp"
 #include "laser/line_strip.hpp"
-#include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
 #include "tsdf/solid_reconstructor.hpp"
 

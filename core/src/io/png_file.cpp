@@ -1,4 +1,4 @@
-#include "io/grey_png.hpp"
+#include "io/png_file.hpp"
 
 #include <spng.h>
 

@@ -1,8 +1,8 @@
-#include "run/preview_solves.hpp"
-
 #include <gtest/gtest.h>
 
 #include <vector>
+
+#include "run/run_scan.hpp"
 
 namespace octurn {
 namespace {

@@ -1,6 +1,5 @@
 #include "run/run_scan.hpp"
 
-#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cmath>
@@ -22,7 +21,6 @@
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
-#include "run/preview_solves.hpp"
 #include "store/stored_scan.hpp"
 #include "turntable/real_time.hpp"
 

@@ -111,8 +111,9 @@ class PacketFramesOf : public ::testing::TestWithParam<PacketFormat> {
 
 INSTANTIATE_TEST_SUITE_P(Streams, PacketFramesOf,
                          ::testing::Values(depth_packets, infrared_packets),
-                         [](const ::testing::TestParamInfo<PacketFormat>& info) {
-                           return info.param.stream == depth_packets.stream ? "depth" : "infrared";
+                         [](const ::testing::TestParamInfo<PacketFormat>& tested) {
+                           return tested.param.stream == depth_packets.stream ? "depth"
+                                                                              : "infrared";
                          });
 
 TEST(PacketFrames, AreOfAsManyPacketsAsTheCameraSends) {

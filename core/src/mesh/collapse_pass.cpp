@@ -11,7 +11,6 @@
 #include "parallel/radix_sort.hpp"
 
 namespace octurn {
-namespace {
 
 /// Where the neighbours of a vertex lie.
 enum class Reach : char {
@@ -74,6 +73,8 @@ class StripReach {
   int strip_;
   std::span<Reach> reach_;
 };
+
+namespace {
 
 /// Moves each collapse to where its index is in the order, along one cycle after the other: a
 /// second list would be as long again.

@@ -129,9 +129,9 @@ struct DepthBoardView {
 };
 
 /// A pixel of the depth image shows what the infrared picture shows this far to the right and
-/// below, pixels: a Kinect v1 correlates windows whose corner, not whose middle, gives the depth
-/// its place. Measured as 4.8 and 3.9 by Konolige and Mihelich, "Technical description of Kinect
-/// calibration" (ROS, 2011); ROS's drivers have 5 and 4, "from 9x7 correlation window".
+/// below, pixels: about half of the window of 9 x 9 or 9 x 7 pixels that a Kinect v1 is believed
+/// to correlate. 4.8 and 3.9 are said to be measured by Konolige and Mihelich, "Technical
+/// description of Kinect calibration"; ROS's drivers have 5 and 4, "from 9x7 correlation window".
 inline const Eigen::Vector2d infrared_shift{4.8, 3.9};
 
 /// Takes the depths near a board's corners: of each, the mean of the readings within 4 pixels.

@@ -217,7 +217,7 @@ DepthOpticsReport calibrate_depth_optics(std::span<const DepthBoardView> views, 
   for (int i = 0; i < depth_steps && fit; ++i) {
     fit = step(readings, report.lens.lens, fit->model, side);
   }
-  if (!fit || std::abs(fit->model.scale - 1) > max_scale_error) {
+  if (!fit || !(std::abs(fit->model.scale - 1) <= max_scale_error)) {  // also if it is no number
     refuse(report.lens,
            "the board's squares have another size than told, or the sensor's depths are more "
            "than 10 % off");

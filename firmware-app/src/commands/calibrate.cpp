@@ -306,9 +306,9 @@ void show_advice(ProgressBar& bar, const CalibrationRun& run) {
 CalibrationRun run_of_rig(const CalibrateBoardArguments& arguments) {
   const Config config = make_config(arguments.config);
   const RigOptions rig = rig_options(arguments.rig, config);
+  load_sensor_drivers();  // changes the working directory: before the first thread
   const SignalStop signal;
   ScanStore store(config.data);
-  load_sensor_drivers();  // changes the working directory: before the first thread
   Scanner scanner(rig, config.limits, store);
   scanner.expect_ready();
   scanner.look_at_board(metres_from_mm(

@@ -5,9 +5,9 @@
 #include <limits>
 #include <optional>
 
-#include "calibrate/median.hpp"
 #include "depth/depth_limits.hpp"
 #include "depth/pinhole.hpp"
+#include "octurn/median.hpp"
 
 namespace octurn {
 

@@ -4,9 +4,9 @@
 
 #include "calibrate/checked_stop.hpp"
 #include "calibrate/for_each_stop.hpp"
-#include "calibrate/median.hpp"
 #include "calibrate/stop_residuals.hpp"
 #include "mesh/places.hpp"
+#include "octurn/median.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

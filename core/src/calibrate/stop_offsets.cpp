@@ -9,8 +9,8 @@
 #include <span>
 
 #include "calibrate/for_each_stop.hpp"
-#include "calibrate/median.hpp"
 #include "io/number_text.hpp"
+#include "octurn/median.hpp"
 #include "octurn/units.hpp"
 #include "solve/symmetric_solver.hpp"
 

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "calibrate/for_each_stop.hpp"
-#include "calibrate/median.hpp"
+#include "octurn/median.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

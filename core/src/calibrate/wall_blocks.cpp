@@ -5,9 +5,9 @@
 #include <cmath>
 #include <cstdlib>
 
-#include "calibrate/median.hpp"
 #include "depth/depth_limits.hpp"
 #include "io/radial_distortion.hpp"
+#include "octurn/median.hpp"
 
 namespace octurn {
 namespace {

@@ -8,6 +8,7 @@
 #include "laser/rig_solver.hpp"
 #include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"
+#include "octurn/median.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -56,15 +57,6 @@ constexpr double negligible_share = 0.05;
 // Smallest change of a plane that is worth a new model.
 constexpr double least_shift = 0.00005;  // metres
 constexpr double least_turn_deg = 0.004;
-
-double median(std::vector<float> values) {
-  if (values.empty()) {
-    return 0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return static_cast<double>(*middle);
-}
 
 /// The median distance between the surfaces of two lasers, metres; without an object, of the lines
 /// on the platform from its plane.

@@ -7,6 +7,7 @@
 #include "depth/depth_limits.hpp"
 #include "io/radial_distortion.hpp"
 #include "octurn/lens.hpp"
+#include "octurn/median.hpp"
 #include "octurn/sensor_map.hpp"
 #include "solve/symmetric_solver.hpp"
 
@@ -47,13 +48,6 @@ double board_inverse_depth(const CameraLens& lens, const Eigen::Isometry3d& came
   const Vector2d ray = shown * distortion.undistorting_factor(shown.norm());
   const Vector3d normal = camera_from_board.linear().col(2);
   return normal.dot(ray.homogeneous()) / (normal.dot(camera_from_board.translation()) * side);
-}
-
-/// @param sizes  not empty
-double median_of(std::vector<double> sizes) {
-  const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-  std::ranges::nth_element(sizes, middle);
-  return *middle;
 }
 
 /// A depth and the place of its board.
@@ -97,7 +91,7 @@ std::optional<DepthFit> step(const std::vector<BoardReading>& readings, const Ca
     residuals.push_back(compare(reading, lens, from, side));
     sizes.push_back(std::abs(residuals.back().residual));
   }
-  const double limit = outlier_factor * std::max(1.5 * median_of(sizes), disparity_unit / 10);
+  const double limit = outlier_factor * std::max(1.5 * median(sizes), disparity_unit / 10);
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Zero();
   Vector4d right = Vector4d::Zero();
   DepthFit fit;

@@ -11,6 +11,7 @@
 #include "lens/grey_image.hpp"
 #include "lens/homography.hpp"
 #include "octurn/lens.hpp"
+#include "octurn/median.hpp"
 #include "solve/symmetric_solver.hpp"
 
 namespace octurn {
@@ -114,10 +115,7 @@ Matrix3d robust_homography(const BoardView& view) {
     for (const BoardCorner& corner : view) {
       distances.push_back((mapped(homography, corner.column, corner.row) - corner.pixel).norm());
     }
-    std::vector<double> sorted = distances;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::ranges::nth_element(sorted, middle);
-    const double limit = std::max(2.0, 4 * *middle);
+    const double limit = std::max(2.0, 4 * median(distances));
     fitting.clear();
     for (std::size_t i = 0; i < view.size(); ++i) {
       if (distances[i] < limit) {
@@ -251,11 +249,10 @@ BoardView alternating(const std::vector<LatticeSaddle>& saddles, const BoardView
   if (contrasts.empty()) {
     return {};
   }
-  const auto middle = contrasts.begin() + static_cast<std::ptrdiff_t>(contrasts.size() / 2);
-  std::ranges::nth_element(contrasts, middle);
+  const double usual = median(std::move(contrasts));
   BoardView view;
   for (const LatticeSaddle& saddle : saddles) {
-    if (saddle.contrast / *middle > min_contrast_share) {
+    if (saddle.contrast / usual > min_contrast_share) {
       view.push_back(saddle.corner);
     }
   }

@@ -7,6 +7,8 @@
 #include <optional>
 #include <utility>
 
+#include "octurn/median.hpp"
+
 namespace octurn {
 namespace {
 
@@ -168,9 +170,7 @@ void drop_outliers(std::vector<BoardView>& views, const LensAndBoards& found) {
       distances.push_back(off(i, corner));
     }
   }
-  const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
-  std::ranges::nth_element(distances, middle);
-  const double farthest = std::max(0.5, 5 * *middle);
+  const double farthest = std::max(0.5, 5 * median(std::move(distances)));
   for (std::size_t i = 0; i < views.size(); ++i) {
     std::erase_if(views[i], [&](const BoardCorner& corner) { return off(i, corner) > farthest; });
   }

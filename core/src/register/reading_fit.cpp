@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cmath>
 
+#include "octurn/median.hpp"
 #include "octurn/snapshot.hpp"
 #include "parallel/fork_join.hpp"
 
@@ -191,15 +192,6 @@ double find_correlation(const StopFit& fit, double readings_per_patch) {
 double largest_sigma(const Eigen::Matrix3d& covariance) {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance);
   return std::sqrt(std::max(solver.eigenvalues().maxCoeff(), 0.0));
-}
-
-double median(std::vector<float> values) {
-  if (values.empty()) {
-    return 0;
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return static_cast<double>(*middle);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "depth/pinhole.hpp"
+#include "octurn/median.hpp"
 #include "octurn/tiles.hpp"
 
 namespace octurn {
@@ -71,11 +72,7 @@ ViewAgreement compare_views(std::span<const Snapshot> views) {
       }
     }
   }
-  if (!gaps.empty()) {
-    const auto middle = gaps.begin() + static_cast<std::ptrdiff_t>(gaps.size() / 2);
-    std::ranges::nth_element(gaps, middle);
-    found.gap = *middle;
-  }
+  found.gap = median(std::move(gaps));
   return found;
 }
 

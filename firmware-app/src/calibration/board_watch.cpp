@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "octurn/median.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -37,9 +38,7 @@ double median_move(const BoardView& view, const BoardView& other) {
     }
     moves.push_back(nearest);
   }
-  const auto middle = moves.begin() + static_cast<std::ptrdiff_t>(moves.size() / 2);
-  std::ranges::nth_element(moves, middle);
-  return std::sqrt(*middle);
+  return std::sqrt(median(std::move(moves)));
 }
 
 }  // namespace

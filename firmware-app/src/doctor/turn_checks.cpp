@@ -12,6 +12,7 @@
 #include "capture/take_depth_image.hpp"
 #include "log.hpp"
 #include "octurn/error.hpp"
+#include "octurn/median.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
@@ -39,12 +40,6 @@ constexpr double approach_deg = 15;  // more than the backlash of any gears
 // and biases smaller angles towards 0.
 constexpr double apart_deg = 8;
 constexpr int looks = 2 * few_moves + more_moves + closing_looks + 3 * play_rounds + 2;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 [[noreturn]] void throw_unseen(const std::string& what) {
   throw Error(ErrorCode::sensor_blind, what,

@@ -838,6 +838,18 @@ bool Worker::is_board_put_away(CalibrationRun& run, const std::stop_token& stop)
   return is_cancelled;
 }
 
+/// Publishes what a picture of a board showed, and that the worker still lives.
+void Worker::report_look(CalibrationRun& run, const BoardLook& look) {
+  ports_.heartbeat.suspend();
+  if (look.taken > 0) {
+    ports_.slot.report_lens_view();
+  }
+  run.look = look;
+  run.stop = look.taken;
+  run.stops = look.wanted;
+  ports_.board.set_calibration_run(run);
+}
+
 /// The same as `find_lens` for a depth sensor: solves its optics.
 void Worker::find_optics(CalibrationRun& run, double square, const std::stop_token& stop) {
   ports_.heartbeat.suspend();  // this takes as long as somebody holds a board
@@ -852,14 +864,7 @@ void Worker::find_optics(CalibrationRun& run, double square, const std::stop_tok
     set_sensor_ready(sensor.name());
     introduce_sensor();
     ports_.board.set_camera_picture(picture);
-    ports_.heartbeat.suspend();
-    if (look.taken > 0) {
-      ports_.slot.report_lens_view();
-    }
-    run.look = look;
-    run.stop = look.taken;
-    run.stops = look.wanted;
-    ports_.board.set_calibration_run(run);
+    report_look(run, look);
   };
   const std::vector<DepthBoardView> views = take_board_views(sensor, stop, show);
   if (is_board_put_away(run, stop)) {
@@ -900,14 +905,7 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
     expect_size_for_lens(timed->picture, lens, camera.name());
     watch.see(timed->picture);
     show_picture(timed->picture);
-    ports_.heartbeat.suspend();
-    if (watch.look().taken > 0) {
-      ports_.slot.report_lens_view();
-    }
-    run.look = watch.look();
-    run.stop = watch.look().taken;
-    run.stops = watch.look().wanted;
-    ports_.board.set_calibration_run(run);
+    report_look(run, watch.look());
   }
   if (is_board_put_away(run, stop)) {
     return;

@@ -84,6 +84,7 @@ class Worker {
   void measure_wall(CalibrationRun& run, const std::stop_token& stop);
   void find_lens(CalibrationRun& run, const std::stop_token& stop);
   void find_optics(CalibrationRun& run, double square, const std::stop_token& stop);
+  void report_look(CalibrationRun& run, const BoardLook& look);
   bool is_board_put_away(CalibrationRun& run, const std::stop_token& stop) const;
   std::string first_scan() const;
   void use_lens(const std::string& begun);

@@ -4,13 +4,14 @@
 #include <optional>
 #include <utility>
 
+#include "octurn/error.hpp"
 #include "octurn/snapshot.hpp"
 
 namespace octurn {
 namespace {
 
 constexpr int wanted_depth_views = 24;  // dots blur corners: twice those of a camera
-constexpr int depth_frames = 10;        // more hardly lower what is left of the noise
+constexpr int depth_frames = 10;        // more frames hardly lower the noise
 constexpr int patience = 8;  // pictures of one hold that give no view, by a simulated person
 
 /// Shows a board to a simulated sensor during its lifetime.

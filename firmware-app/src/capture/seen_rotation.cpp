@@ -185,8 +185,8 @@ Candidate best_rotation(const FramePair& frames, const AngleRange& range) {
 }
 
 /// Refines a candidate by pattern search (Hooke and Jeeves 1961).
-/// @param step  the first steps, of which those that are 0 stay so
-/// @param smallest  of the steps' angle and translation, as a share of the first
+/// @param step      the first steps; a member that is 0 is not searched
+/// @param smallest  the search ends when its steps are this share of the first ones
 Candidate refined(const FramePair& frames, Candidate best, PlanarMotion step, double smallest) {
   for (double scale = 1; scale > smallest;) {
     bool is_better = false;

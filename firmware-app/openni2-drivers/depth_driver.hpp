@@ -12,8 +12,7 @@
 #include <string>
 #include <string_view>
 
-#include "depth_stream.hpp"
-#include "infrared_stream.hpp"
+#include "sensor_stream.hpp"
 
 namespace octurn {
 

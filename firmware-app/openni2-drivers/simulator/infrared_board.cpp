@@ -24,19 +24,8 @@ constexpr double usual_inverse = 1.7;  // 1/m
 constexpr double dot_size = 0.75;      // pixels, standard deviation
 constexpr int dot_pitch = 3;           // pixels
 constexpr float noise_level = 3;       // grey levels
-constexpr double soft_edge = 1.6;      // pixels, as the lens and a pixel's area blur it
 
-/// A pose of the board: its centre as fractions of the picture, its distance and its rotations.
-struct InfraredHold {
-  double across = 0.5;
-  double down = 0.5;
-  double distance = 0.6;  // metres
-  double about_x = 0;     // radians
-  double about_y = 0;
-  double about_z = 0;
-};
-
-constexpr std::array<InfraredHold, 28> infrared_holds = {
+constexpr std::array<BoardHold, 28> infrared_holds = {
     {{0.50, 0.50, 0.55, 0.1, 0.0, 0.0},    {0.50, 0.50, 0.58, 0.8, 0.0, 0.1},
      {0.50, 0.50, 0.58, -0.8, 0.0, 1.5},   {0.50, 0.50, 0.58, 0.0, 0.8, 0.2},
      {0.50, 0.50, 0.58, 0.0, -0.8, 1.2},   {0.24, 0.25, 0.54, 0.5, 0.5, 0.0},
@@ -62,17 +51,11 @@ Vector2d infrared_ray(const SensorOptics& optics, double u, double v) {
 }  // namespace
 
 Eigen::Isometry3d infrared_hold(int number, const SensorOptics& optics) {
-  const InfraredHold& hold =
+  const BoardHold& hold =
       infrared_holds[static_cast<std::size_t>(number - 1) % infrared_holds.size()];
   const Vector2d middle =
       infrared_ray(optics, hold.across * (camera.width - 1), hold.down * (camera.height - 1));
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(hold.distance / board_square * middle.homogeneous());
-  pose.rotate(Eigen::AngleAxisd(hold.about_x, Vector3d::UnitX()));
-  pose.rotate(Eigen::AngleAxisd(hold.about_y, Vector3d::UnitY()));
-  pose.rotate(Eigen::AngleAxisd(hold.about_z, Vector3d::UnitZ()));
-  pose.translate(Vector3d(-board_columns / 2.0, -board_rows / 2.0, 0));
-  return pose;
+  return camera_from_board(hold, middle);
 }
 
 InfraredBoard::InfraredBoard(const SensorOptics& optics, std::uint32_t seed)
@@ -105,11 +88,12 @@ void InfraredBoard::look_at(int hold) {
   hold_ = hold;
   seen_.clear();
   seen_.reserve(pixels(camera));
-  const Eigen::Isometry3d camera_from_board =
+  const Eigen::Isometry3d held =
       hold > 0 ? infrared_hold(hold, optics_) : Eigen::Isometry3d::Identity();
-  const Eigen::Isometry3d board_from_camera = camera_from_board.inverse();
-  const Vector3d normal = camera_from_board.linear().col(2);
-  const double plane = normal.dot(camera_from_board.translation()) * board_square;
+  const Eigen::Isometry3d board_from_camera = held.inverse();
+  const Vector3d normal = held.linear().col(2);
+  const double plane = normal.dot(held.translation()) * board_square;
+  const Vector2d pixel(1 / optics_.fx, 1 / optics_.fy);
   for (int v = 0; v < camera.height; ++v) {
     for (int u = 0; u < camera.width; ++u) {
       const Vector2d ray = infrared_ray(optics_, u, v);
@@ -117,11 +101,7 @@ void InfraredBoard::look_at(int hold) {
       double level = 92;  // of the room
       if (hold > 0) {
         const Vector2d met = intersect_board(board_from_camera, ray);
-        const Vector2d right =
-            intersect_board(board_from_camera, ray + Vector2d(1 / optics_.fx, 0)) - met;
-        const Vector2d below =
-            intersect_board(board_from_camera, ray + Vector2d(0, 1 / optics_.fy)) - met;
-        level = board_light(met, soft_edge * (right.cwiseAbs() + below.cwiseAbs()));
+        level = board_light(board_from_camera, ray, met, pixel);
         inverse_depth = is_on_board(met) ? normal.dot(ray.homogeneous()) / plane : room_inverse;
       }
       const double near = std::pow(inverse_depth / usual_inverse, 2);

@@ -14,6 +14,8 @@ constexpr double black = 28;
 constexpr double white = 205;
 constexpr double background = 92;
 
+constexpr double soft_edge = 1.6;  // pixels, as the lens and a pixel's area blur it
+
 /// 1 inside of the even squares, -1 inside of the odd ones, interpolated at their border.
 /// @param width  of the border, squares
 double parity(double place, double width) {
@@ -23,6 +25,16 @@ double parity(double place, double width) {
 }
 
 }  // namespace
+
+Eigen::Isometry3d camera_from_board(const BoardHold& hold, const Vector2d& middle) {
+  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+  pose.translate(hold.distance / board_square * middle.homogeneous());
+  pose.rotate(Eigen::AngleAxisd(hold.about_x, Vector3d::UnitX()));
+  pose.rotate(Eigen::AngleAxisd(hold.about_y, Vector3d::UnitY()));
+  pose.rotate(Eigen::AngleAxisd(hold.about_z, Vector3d::UnitZ()));
+  pose.translate(Vector3d(-board_columns / 2.0, -board_rows / 2.0, 0));
+  return pose;
+}
 
 Vector2d intersect_board(const Eigen::Isometry3d& board_from_camera, const Vector2d& ray) {
   const Vector3d from = board_from_camera.translation();
@@ -35,13 +47,17 @@ bool is_on_board(const Vector2d& place) {
          place.x() < board_columns + board_margin && place.y() < board_rows + board_margin;
 }
 
-double board_light(const Vector2d& place, const Vector2d& width) {
+double board_light(const Eigen::Isometry3d& board_from_camera, const Vector2d& ray,
+                   const Vector2d& place, const Vector2d& pixel) {
   if (!is_on_board(place)) {
     return background;
   }
   if (!(place.x() > 0 && place.y() > 0 && place.x() < board_columns && place.y() < board_rows)) {
     return white;
   }
+  const Vector2d right = intersect_board(board_from_camera, ray + Vector2d(pixel.x(), 0)) - place;
+  const Vector2d below = intersect_board(board_from_camera, ray + Vector2d(0, pixel.y())) - place;
+  const Vector2d width = soft_edge * (right.cwiseAbs() + below.cwiseAbs());
   const double dark = (1 + parity(place.x(), width.x()) * parity(place.y(), width.y())) / 2;
   return white + dark * (black - white);
 }

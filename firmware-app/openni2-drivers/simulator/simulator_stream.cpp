@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <span>
+#include <utility>
 
 #include "octurn/snapshot.hpp"
 #include "rig/interruptible_sleep.hpp"
@@ -11,33 +12,44 @@ namespace octurn {
 
 using std::chrono::steady_clock;
 
-SimulatorStream::SimulatorStream(const Simulation& simulation, SimulatedKinect& kinect,
-                                 DeviceState& device)
-    : DepthStream(Intrinsics{}.fx), simulation_(simulation), kinect_(kinect), device_(device) {}
+SimulatorThread::SimulatorThread(const Simulation& simulation, DeviceState& device,
+                                 std::function<bool()> take)
+    : simulation_(simulation), device_(device), take_(std::move(take)) {}
 
-SimulatorStream::~SimulatorStream() = default;
-
-OniStatus SimulatorStream::start() {
+OniStatus SimulatorThread::start() {
   if (!thread_.joinable()) {
     thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
   }
   return ONI_STATUS_OK;
 }
 
-void SimulatorStream::stop() { thread_ = {}; }
-
 /// The sensor's clock advances after the frame is sent: a reader of the clock has been sent every
 /// frame up to that time.
-void SimulatorStream::run(const std::stop_token& stop) {
+void SimulatorThread::run(const std::stop_token& stop) {
   const auto period = frame_period(simulation_);
   auto due = steady_clock::now() + period;
-  while (sleep_until(stop, due) && !is_lost()) {
-    if (!is_silent()) {
-      deliver_frame();
-    }
+  while (sleep_until(stop, due) && take_()) {
     ++device_.periods;
     due = std::max(due + period, steady_clock::now());  // no burst of frames after a delay
   }
+}
+
+SimulatorStream::SimulatorStream(const Simulation& simulation, SimulatedKinect& kinect,
+                                 DeviceState& device)
+    : DepthStream(Intrinsics{}.fx),
+      simulation_(simulation),
+      kinect_(kinect),
+      device_(device),
+      thread_(simulation, device, [this] { return take(); }) {}
+
+bool SimulatorStream::take() {
+  if (is_lost()) {
+    return false;
+  }
+  if (!is_silent()) {
+    deliver_frame();
+  }
+  return true;
 }
 
 bool SimulatorStream::is_lost() {
@@ -66,27 +78,22 @@ void SimulatorStream::deliver_frame() {
   });
 }
 
-OniStatus SimulatorInfraredStream::start() {
-  if (!thread_.joinable()) {
-    thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
-  }
-  return ONI_STATUS_OK;
-}
+SimulatorInfraredStream::SimulatorInfraredStream(const Simulation& simulation,
+                                                 SimulatedKinect& kinect, DeviceState& device)
+    : kinect_(kinect), device_(device), thread_(simulation, device, [this] { return take(); }) {}
 
-void SimulatorInfraredStream::run(const std::stop_token& stop) {
-  const auto period = frame_period(simulation_);
-  auto due = steady_clock::now() + period;
-  while (sleep_until(stop, due) && !device_.is_lost) {
-    const auto time = steady_clock::now();
-    const std::lock_guard lock(device_.exposing);
-    kinect_.show_board(device_.board);
-    ++pictures_;
-    deliver(pictures_, time, [&](std::span<std::uint8_t> picture) {
-      kinect_.expose_infrared(static_cast<std::uint32_t>(pictures_), picture);
-    });
-    ++device_.periods;
-    due = std::max(due + period, steady_clock::now());
+bool SimulatorInfraredStream::take() {
+  if (device_.is_lost) {
+    return false;
   }
+  const auto time = steady_clock::now();
+  const std::lock_guard lock(device_.exposing);
+  kinect_.show_board(device_.board);
+  ++pictures_;
+  deliver(pictures_, time, [&](std::span<std::uint8_t> picture) {
+    kinect_.expose_infrared(static_cast<std::uint32_t>(pictures_), picture);
+  });
+  return true;
 }
 
 }  // namespace octurn

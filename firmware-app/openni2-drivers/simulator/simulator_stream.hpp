@@ -1,13 +1,13 @@
 #pragma once
 
 #include <atomic>
+#include <functional>
 #include <mutex>
 #include <stop_token>
 #include <thread>
 
-#include "depth_stream.hpp"
-#include "infrared_stream.hpp"
 #include "rig/simulation.hpp"
+#include "sensor_stream.hpp"
 #include "simulator/simulated_kinect.hpp"
 
 namespace octurn {
@@ -23,20 +23,35 @@ struct DeviceState {
   std::atomic<bool> is_lost = false;
 };
 
-/// The depth stream of a simulated Kinect, at 30 frames a second times the simulation's speed. Its
-/// own thread renders from start() to stop().
-class SimulatorStream final : public DepthStream {
+/// The thread of a simulated stream, from start() to stop(). It takes 30 frames a second times the
+/// simulation's speed.
+class SimulatorThread {
  public:
-  SimulatorStream(const Simulation& simulation, SimulatedKinect& kinect, DeviceState& device);
-  ~SimulatorStream() override;
-  SimulatorStream(const SimulatorStream&) = delete;
-  SimulatorStream& operator=(const SimulatorStream&) = delete;
+  /// @param take  called by the thread for each frame; returns false once the device is lost
+  SimulatorThread(const Simulation& simulation, DeviceState& device, std::function<bool()> take);
 
-  OniStatus start() override;
-  void stop() override;
+  OniStatus start();
+  void stop() { thread_ = {}; }
 
  private:
   void run(const std::stop_token& stop);
+
+  const Simulation& simulation_;
+  DeviceState& device_;
+  std::function<bool()> take_;
+  std::jthread thread_ = {};
+};
+
+/// The depth stream of a simulated Kinect.
+class SimulatorStream final : public DepthStream {
+ public:
+  SimulatorStream(const Simulation& simulation, SimulatedKinect& kinect, DeviceState& device);
+
+  OniStatus start() override { return thread_.start(); }
+  void stop() override { thread_.stop(); }
+
+ private:
+  bool take();
   bool is_lost();
   bool is_silent() const;
   void deliver_frame();
@@ -45,27 +60,25 @@ class SimulatorStream final : public DepthStream {
   SimulatedKinect& kinect_;
   DeviceState& device_;
   int frames_ = 0;  // since the device was opened
-  std::jthread thread_;
+  SimulatorThread thread_;
 };
 
-/// The infrared stream of a simulated Kinect, likewise.
+/// The infrared stream of a simulated Kinect.
 class SimulatorInfraredStream final : public InfraredStream {
  public:
   SimulatorInfraredStream(const Simulation& simulation, SimulatedKinect& kinect,
-                          DeviceState& device)
-      : simulation_(simulation), kinect_(kinect), device_(device) {}
+                          DeviceState& device);
 
-  OniStatus start() override;
-  void stop() override { thread_ = {}; }
+  OniStatus start() override { return thread_.start(); }
+  void stop() override { thread_.stop(); }
 
  private:
-  void run(const std::stop_token& stop);
+  bool take();
 
-  const Simulation& simulation_;
   SimulatedKinect& kinect_;
   DeviceState& device_;
   int pictures_ = 0;
-  std::jthread thread_;
+  SimulatorThread thread_;
 };
 
 }  // namespace octurn

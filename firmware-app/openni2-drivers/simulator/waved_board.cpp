@@ -21,34 +21,23 @@ constexpr float noise_level = 1.2F;  // grey levels
 
 constexpr int still_pictures = 5;
 constexpr int moving_pictures = 2;
-constexpr double soft_edge = 1.6;  // pixels, as the lens and a pixel's area blur it
 
-/// A pose of the board: its centre as fractions of the picture, its distance, and its rotations.
-struct Hold {
-  double across = 0.5;
-  double down = 0.5;
-  double distance = 0.33;  // metres
-  double about_x = 0;      // radians
-  double about_y = 0;
-  double about_z = 0;
-};
+constexpr std::array<BoardHold, 14> holds = {{{0.5, 0.5, 0.32, 0.05, 0.02, 0.0},
+                                              {0.45, 0.5, 0.34, 0.5, 0.0, 0.1},
+                                              {0.55, 0.5, 0.34, -0.5, 0.05, 1.5},
+                                              {0.5, 0.45, 0.34, 0.0, 0.55, 0.2},
+                                              {0.5, 0.55, 0.34, 0.1, -0.55, 1.2},
+                                              {0.25, 0.25, 0.28, 0.3, 0.25, 0.0},
+                                              {0.75, 0.25, 0.28, 0.3, -0.25, 0.1},
+                                              {0.25, 0.75, 0.28, -0.3, 0.25, 0.05},
+                                              {0.75, 0.75, 0.28, -0.3, -0.25, -0.1},
+                                              {0.2, 0.5, 0.24, 0.1, 0.3, 1.5},
+                                              {0.8, 0.5, 0.24, 0.1, -0.3, 1.6},
+                                              {0.5, 0.2, 0.22, 0.25, 0.1, 0.0},
+                                              {0.5, 0.8, 0.22, -0.25, 0.1, 0.1},
+                                              {0.5, 0.5, 0.42, 0.4, 0.4, 0.7}}};
 
-constexpr std::array<Hold, 14> holds = {{{0.5, 0.5, 0.32, 0.05, 0.02, 0.0},
-                                         {0.45, 0.5, 0.34, 0.5, 0.0, 0.1},
-                                         {0.55, 0.5, 0.34, -0.5, 0.05, 1.5},
-                                         {0.5, 0.45, 0.34, 0.0, 0.55, 0.2},
-                                         {0.5, 0.55, 0.34, 0.1, -0.55, 1.2},
-                                         {0.25, 0.25, 0.28, 0.3, 0.25, 0.0},
-                                         {0.75, 0.25, 0.28, 0.3, -0.25, 0.1},
-                                         {0.25, 0.75, 0.28, -0.3, 0.25, 0.05},
-                                         {0.75, 0.75, 0.28, -0.3, -0.25, -0.1},
-                                         {0.2, 0.5, 0.24, 0.1, 0.3, 1.5},
-                                         {0.8, 0.5, 0.24, 0.1, -0.3, 1.6},
-                                         {0.5, 0.2, 0.22, 0.25, 0.1, 0.0},
-                                         {0.5, 0.8, 0.22, -0.25, 0.1, 0.1},
-                                         {0.5, 0.5, 0.42, 0.4, 0.4, 0.7}}};
-
-Hold between(const Hold& one, const Hold& other, double share) {
+BoardHold between(const BoardHold& one, const BoardHold& other, double share) {
   const auto mix = [share](double a, double b) { return a + share * (b - a); };
   return {.across = mix(one.across, other.across),
           .down = mix(one.down, other.down),
@@ -58,28 +47,14 @@ Hold between(const Hold& one, const Hold& other, double share) {
           .about_z = mix(one.about_z, other.about_z)};
 }
 
-Hold hold_at(int number) {
+BoardHold hold_at(int number) {
   constexpr int of_one = still_pictures + moving_pictures;
   const auto index = static_cast<std::size_t>(number / of_one);
   const int within = number % of_one;
-  const Hold& now = holds[index % holds.size()];
-  const Hold& next = holds[(index + 1) % holds.size()];
+  const BoardHold& now = holds[index % holds.size()];
+  const BoardHold& next = holds[(index + 1) % holds.size()];
   const double share = std::max(0, within - still_pictures + 1) / (moving_pictures + 1.0);
   return between(now, next, share);
-}
-
-/// The board's frame has its origin at the board's corner, lengths in squares.
-Eigen::Isometry3d camera_from_board(const LaserSimulation& simulation, const Hold& hold) {
-  const Intrinsics& lens = simulation.lens;
-  const Vector2d middle =
-      ray_at(simulation, hold.across * (lens.width - 1), hold.down * (lens.height - 1));
-  Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
-  pose.translate(hold.distance / board_square * middle.homogeneous());
-  pose.rotate(Eigen::AngleAxisd(hold.about_x, Vector3d::UnitX()));
-  pose.rotate(Eigen::AngleAxisd(hold.about_y, Vector3d::UnitY()));
-  pose.rotate(Eigen::AngleAxisd(hold.about_z, Vector3d::UnitZ()));
-  pose.translate(Vector3d(-board_columns / 2.0, -board_rows / 2.0, 0));
-  return pose;
 }
 
 }  // namespace
@@ -96,8 +71,11 @@ WavedBoard::WavedBoard(const LaserSimulation& simulation)
 
 Picture WavedBoard::picture(int number) const {
   const Intrinsics& lens = simulation_.lens;
-  const Eigen::Isometry3d board_from_camera =
-      camera_from_board(simulation_, hold_at(number)).inverse();
+  const BoardHold hold = hold_at(number);
+  const Vector2d middle =
+      ray_at(simulation_, hold.across * (lens.width - 1), hold.down * (lens.height - 1));
+  const Eigen::Isometry3d board_from_camera = camera_from_board(hold, middle).inverse();
+  const Vector2d pixel(1 / lens.fx, 1 / lens.fy);
   Picture picture{.width = lens.width, .height = lens.height, .samples = {}};
   picture.samples.reserve(static_cast<std::size_t>(lens.width) *
                           static_cast<std::size_t>(lens.height));
@@ -107,16 +85,11 @@ Picture WavedBoard::picture(int number) const {
     for (int u = 0; u < lens.width; ++u) {
       const Vector2d& ray = rays_[picture.samples.size()];
       const Vector2d met = intersect_board(board_from_camera, ray);
-      const Vector2d right =
-          intersect_board(board_from_camera, ray + Vector2d(1 / lens.fx, 0)) - met;
-      const Vector2d below =
-          intersect_board(board_from_camera, ray + Vector2d(0, 1 / lens.fy)) - met;
-      const Vector2d width = soft_edge * (right.cwiseAbs() + below.cwiseAbs());
       const double shade = 1 - fall_off * (1 - static_cast<double>(u) / lens.width);
       const auto grain =
           static_cast<double>(noise_level * noise_.at(sequence, static_cast<std::size_t>(u)));
-      picture.samples.push_back(static_cast<std::uint8_t>(
-          std::clamp(std::lround(shade * board_light(met, width) + grain), 0L, 255L)));
+      picture.samples.push_back(static_cast<std::uint8_t>(std::clamp(
+          std::lround(shade * board_light(board_from_camera, ray, met, pixel) + grain), 0L, 255L)));
     }
   }
   return picture;

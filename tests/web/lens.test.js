@@ -1,7 +1,9 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf, missingPart, opticsFiguresOf} from '../../web/scanner/lens_words.js';
+import {
+  foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf, missingPart, opticsFiguresOf,
+} from '../../web/scanner/lens_words.js';
 import {calibration} from './examples.js';
 
 const told = {fx: 682.4, fy: 682.4, cx: 409.5, cy: 307.5, k1: 0, k2: 0};
@@ -63,7 +65,10 @@ test('a lens that is refused, cancelled or failed is not to be kept', () => {
 });
 
 test('a Kinect\'s optics have a scale, and nothing configured', () => {
-  const optics = {fx: 590.77, fy: 590.77, cx: 331.67, cy: 244.82, k1: -0.0623, k2: 0.007, depth_scale: 1.01405, depth_offset_per_m: 0.004};
+  const optics = {
+    fx: 590.77, fy: 590.77, cx: 331.67, cy: 244.82, k1: -0.0623, k2: 0.007,
+    depth_scale: 1.01405, depth_offset_per_m: 0.004,
+  };
   const record = {...optics, sigma: {...optics, fx: 1.05, depth_scale: 0.0023}};
   const figures = opticsFiguresOf({...report, optics: record});
   assert.deepEqual([figures[0].text, figures[0].configured], ['590.77 ± 1.05', '']);

@@ -32,7 +32,10 @@ const isWatched = () => here() === 'calibrate' && !document.hidden;
 /** @param {unknown} error */
 const problemOf = (error) => error instanceof api.Problem ? error : new api.Problem('page', String(error));
 
-/** @type {Promise<void> | null} the card for the lens of a camera with lasers, or of a Kinect's infrared camera; other sensors need none */
+/**
+ * The card for the lens of a camera with lasers, or of a Kinect's infrared camera; other sensors need none.
+ * @type {Promise<void> | null}
+ */
 let lensCard = null;
 
 /** @param {Calibration} news */

@@ -1,5 +1,6 @@
-// The lens calibration of a camera with lasers, or of a Kinect's infrared camera, on the page Calibrate: a board is held in front of
-// the camera, and the solved lens is kept or discarded. The fragment is fetched if the scanner has such a camera.
+// The lens calibration of a camera with lasers, or of a Kinect's infrared camera, on the page Calibrate: a board is held
+// in front of the camera, and the solved lens is kept or discarded. The fragment is fetched if the scanner has such a
+// camera.
 
 import * as api from '../api/api.js';
 import * as requests from '../api/api_calibration.js';
@@ -89,7 +90,8 @@ function nameKinect() {
       setText(node, text(key));
     }
   }
-  part(element('lens'), 'a[href*="help/"]').setAttribute('href', 'help/calibration.html#the-optics-from-a-printed-board');
+  const help = part(element('lens'), 'a[href*="help/"]');
+  help.setAttribute('href', 'help/calibration.html#the-optics-from-a-printed-board');
 }
 
 /** Shows the state of the lens calibration. @param {Calibration} calibration */

@@ -105,16 +105,23 @@ export function lensFiguresOf({lens, sigma}, configured) {
   ];
 }
 
-/** A Kinect's optics, as found. @param {LensReport} report @returns {{label: string, text: string, configured: string}[]} */
+/**
+ * A Kinect's optics, as found.
+ * @param {LensReport} report
+ * @returns {{label: string, text: string, configured: string}[]}
+ */
 export function opticsFiguresOf({optics}) {
   if (!optics) {
     return [];
   }
-  const row = (/** @type {string} */ label, /** @type {'fx' | 'cx' | 'cy' | 'k1' | 'depth_scale'} */ key, /** @type {number} */ digits) => ({
-    label, text: text('lens.figure', {value: fixed(optics[key], digits), sigma: fixed(optics.sigma[key], digits)}), configured: '',
-  });
-  return [
-    row(text('lens.focal'), 'fx', 2), row(text('lens.axis-column'), 'cx', 2), row(text('lens.axis-row'), 'cy', 2), row('k1', 'k1', 4),
-    row(text('lens.depth-scale'), 'depth_scale', 4),
+  /** @type {[label: string, key: 'fx' | 'cx' | 'cy' | 'k1' | 'depth_scale', digits: number][]} */
+  const rows = [
+    [text('lens.focal'), 'fx', 2], [text('lens.axis-column'), 'cx', 2], [text('lens.axis-row'), 'cy', 2],
+    ['k1', 'k1', 4], [text('lens.depth-scale'), 'depth_scale', 4],
   ];
+  return rows.map(([label, key, digits]) => ({
+    label,
+    text: text('lens.figure', {value: fixed(optics[key], digits), sigma: fixed(optics.sigma[key], digits)}),
+    configured: '',
+  }));
 }

@@ -20,8 +20,9 @@ const stepsPerPeriod = 16;
 const undriven = {[lines.step]: 0, [lines.direction]: 0, [lines.enable]: 1};
 
 /**
- * A platform of some inertia on its motor's magnetic spring, as turntable/simulated_turntable.hpp has it: it lags behind the field, swings, and
- * loses whole periods where the torque T sin(50 (field - platform)) is too small. Angles in radians.
+ * A platform of some inertia on its motor's magnetic spring, as turntable/simulated_turntable.hpp has it: it lags behind
+ * the field, swings, and loses whole periods where the torque T sin(50 (field - platform)) is too small. Angles in
+ * radians.
  */
 class LoadedPlatform {
   #load;

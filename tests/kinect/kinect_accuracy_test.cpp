@@ -1,7 +1,7 @@
-// A scan over a wire that loses 2 % of the packets, beside one over a wire that is well: the same
-// object, noise, stops and settings. Time is counted in frames that the sensor sent.
+// Scans over wires that lose packets, beside one over a wire that is well: the same object, noise,
+// stops and settings. Time is counted in frames that the sensor sent.
 //
-//   emulation_tests --gtest_filter='KinectAccuracy.*' --gtest_output=xml:FILE  writes the figures.
+//   emulation_tests --gtest_filter='*KinectAccuracy.*' --gtest_output=xml:FILE  writes the figures.
 
 #include <gtest/gtest.h>
 
@@ -20,6 +20,7 @@
 #include "kinect/depth_table.hpp"
 #include "kinect/emulated/camera.hpp"
 #include "kinect/kinect_view.hpp"
+#include "kinect/lossy_wire.hpp"
 #include "kinect/packet_frames.hpp"
 #include "octurn/units.hpp"
 #include "run/run_scan.hpp"
@@ -35,9 +36,9 @@ using std::chrono::steady_clock;
 /// A simulated Kinect whose frames come in packets, put together again by the driver's own code.
 class WireSensor final : public DepthSensor {
  public:
-  /// @param loss  share of packets that are lost
-  WireSensor(double loss, int& sent) : sent_(sent) {
-    emulated_.random_loss = loss;
+  WireSensor(const LossyWire& wire, int& sent) : sent_(sent) {
+    emulated_.random_loss = wire.random_loss;
+    emulated_.burst = wire.burst;
     emulated_.depth_on = true;
     show_angle(0);
   }
@@ -144,31 +145,39 @@ double mean_error_mm(const std::string& stl) {
 struct Outcome {
   double error_mm = 0;
   int frames = 0;  // sent until the scan's end
+  Verdict verdict = Verdict::bad;
 };
 
-Outcome scan(double loss) {
+Outcome scan(const LossyWire& wire) {
   const TemporaryFolder folder;
   int sent = 0;
   Rig rig({.speed = 100, .open_sensor = [&](const std::string&) {
-             return std::make_unique<WireSensor>(loss, sent);
+             return std::make_unique<WireSensor>(wire, sent);
            }});
   const ScanSettings settings{.snapshots = 8, .leaf_size = 0.002, .pose = PoseSource::configured};
-  EXPECT_TRUE(run_scan(settings, {}, folder.path(), rig, {}, {}));
-  return {.error_mm = mean_error_mm(content_of(folder.path() / "Scan.stl")), .frames = sent};
+  const auto model = run_scan(settings, {}, folder.path(), rig, {}, {});
+  return {.error_mm = mean_error_mm(content_of(folder.path() / "Scan.stl")),
+          .frames = sent,
+          .verdict = model.value().quality.value().verdict};
 }
 
-TEST(KinectAccuracy, IsThatOfAWireThatIsWellWhere2PercentOfThePacketsAreLost) {
-  const Outcome whole = scan(0);
-  const Outcome lossy = scan(0.02);
+class KinectAccuracy : public ::testing::TestWithParam<LossyWire> {};
+
+TEST_P(KinectAccuracy, IsThatOfAWireThatIsWell) {
+  static const Outcome whole = scan({});
+  const Outcome lossy = scan(GetParam());
   RecordProperty("error_without_loss_um", static_cast<int>(std::lround(1000 * whole.error_mm)));
-  RecordProperty("error_at_2_percent_um", static_cast<int>(std::lround(1000 * lossy.error_mm)));
+  RecordProperty("error_um", static_cast<int>(std::lround(1000 * lossy.error_mm)));
   RecordProperty("frames_without_loss", whole.frames);
-  RecordProperty("frames_at_2_percent", lossy.frames);
+  RecordProperty("frames", lossy.frames);
   EXPECT_GT(whole.error_mm, 0.1);  // there is noise that losses could add to
   EXPECT_NEAR(lossy.error_mm, whole.error_mm, 0.05 * whole.error_mm);
+  EXPECT_EQ(lossy.verdict, Verdict::good);
   EXPECT_GE(whole.frames, 80);
   EXPECT_LE(lossy.frames, 1.5 * whole.frames);
 }
+
+INSTANTIATE_TEST_SUITE_P(Each, KinectAccuracy, ::testing::ValuesIn(lossy_wires));
 
 }  // namespace
 }  // namespace octurn

@@ -8,6 +8,7 @@
 
 #include "kinect/kinect_on_desk.hpp"
 #include "kinect/kinect_view.hpp"
+#include "kinect/lossy_wire.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "sensor/recording.hpp"
@@ -57,16 +58,7 @@ TEST(KinectScan, MakesAClosedModel) {
   expect_same_depths(read_snapshot(stored, kept, kept.shots[1]).frame, seen);
 }
 
-/// A way of losing packets.
-struct Wire {
-  const char* name;
-  double random_loss;
-  int burst;
-};
-
-std::ostream& operator<<(std::ostream& out, const Wire& wire) { return out << wire.name; }
-
-class LossyKinectScan : public ::testing::TestWithParam<Wire> {};
+class LossyKinectScan : public ::testing::TestWithParam<LossyWire> {};
 
 // Pixels that a frame lost are taken from others of the stop: no reading may be missing.
 TEST_P(LossyKinectScan, MakesTheSameModelAsOnAWireThatIsWell) {
@@ -98,11 +90,7 @@ TEST_P(LossyKinectScan, MakesTheSameModelAsOnAWireThatIsWell) {
   EXPECT_NEAR(lost_share_of("lossy"), expected, GetParam().burst > 0 ? 0.1 : expected / 2);
 }
 
-INSTANTIATE_TEST_SUITE_P(Each, LossyKinectScan,
-                         ::testing::Values(Wire{"1 %", 0.01, 0}, Wire{"2 %", 0.02, 0},
-                                           Wire{"5 %", 0.05, 0}, Wire{"bursts of 6", 0, 6},
-                                           Wire{"bursts of 20", 0, 20},
-                                           Wire{"bursts of 100", 0, 100}));
+INSTANTIATE_TEST_SUITE_P(Each, LossyKinectScan, ::testing::ValuesIn(lossy_wires));
 
 TEST(KinectScan, PausesWhenTheKinectIsUnpluggedAndGoesOnWhenItIsBack) {
   KinectOnDesk desk({readings_of(simulated_frame())});

@@ -1,14 +1,16 @@
 // Renders the scanner's help from the documents in docs: render_help.js DOCS_FOLDER OUTPUT_FOLDER FILE.md...
 // Runs when the page is built. Links between these files stay links; a link to another file of the repository, which
-// the scanner does not serve, is replaced by its text. NAME.LANGUAGE.md is a translation of NAME.md, with the same
-// headings in the same order, which get the anchors of the original.
+// the scanner does not serve, is replaced by its text. FOLDER/README.md becomes FOLDER.html. NAME.LANGUAGE.md is a
+// translation of NAME.md, with the same headings in the same order, which get the anchors of the original.
 
 import {mkdirSync, readFileSync, writeFileSync} from 'node:fs';
-import {basename, join} from 'node:path';
+import {basename, dirname, join} from 'node:path';
 import {Marked} from 'marked';
 
 const [docs, output, ...files] = process.argv.slice(2);
-const names = files.map((file) => basename(file, '.md').toLowerCase());
+/** @param {string} path  of a document @returns {string} its page, without .html */
+const nameOf = (path) => basename(path) === 'README.md' ? basename(dirname(path)) : basename(path, '.md').toLowerCase();
+const names = files.map(nameOf);
 
 /** Words of the frame around a document. @type {Record<string, {name: string, back: string, help: string}>} */
 const frames = {
@@ -29,11 +31,14 @@ function addressOf(href) {
   if (/^(https?:|mailto:)/.test(href) || path === '') {
     return href;
   }
-  const name = basename(path, '.md').toLowerCase();
+  const name = nameOf(path);
   if (name === 'api') {
     return '../interface.html';  // the scanner's page on the interface
   }
-  return path.endsWith('.md') && names.includes(name) ? `${name}.html${anchor}` : path.endsWith('.svg') ? path : null;
+  if (/\.(svg|png)$/.test(path)) {
+    return basename(path);
+  }
+  return path.endsWith('.md') && names.includes(name) ? `${name}.html${anchor}` : null;
 }
 
 const marked = new Marked({

@@ -12,7 +12,14 @@ const texts = new Map(readdirSync(folder).filter((file) => file.endsWith('.html'
     .map((file) => [file, readFileSync(join(folder, file), 'utf8')]));
 
 test('the guide and what it leads to are there, each with a title and in the list of all', () => {
-  assert.ok(texts.size >= 9 && texts.has('guide.html') && texts.has('wiring.html') && texts.has('settings.html'));
+  for (const [file, ...needed] of [
+    ['guide.html', 'hardware.html', 'wiring.html', 'settings.html', 'calibration.html', 'laser.html', 'first-day.html'],
+    ['hardware.html', 'parts.html', 'drawing.svg', 'kinect.png', 'laser.png', 'drive.png'],
+  ]) {
+    for (const address of needed) {
+      assert.ok(texts.get(file).includes(`"${address}`), `${file} leads to ${address}`);
+    }
+  }
   for (const [file, text] of texts) {
     assert.match(text, /<title>[^<]+ · Octurn<\/title>/, file);
     assert.equal([...text.matchAll(/<h1 /g)].length, 1, file);

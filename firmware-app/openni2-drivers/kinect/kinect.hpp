@@ -50,9 +50,13 @@ struct RawFrame {
   std::chrono::steady_clock::time_point time = {};
 };
 
-/// A Kinect v1 on USB. Its colour camera is never started: a Raspberry Pi has no bandwidth for
-/// it and depth. Its audio part is left alone: a reset, which models 1473 and for Windows need
-/// before their accelerometer answers, makes some of them vanish.
+/// A Kinect v1 on USB, by libusb: libfreenect 0.5.3, which Debian has, waits for control transfers
+/// without an end, sends commands too fast for a Raspberry Pi 3, resets the audio part at each
+/// opening, and drops the rest of a frame after 5 lost packets.
+///
+/// Its colour camera is never started: a Raspberry Pi has no bandwidth for it and depth. Its audio
+/// part is left alone: a reset, which models 1473 and for Windows need before their accelerometer
+/// answers, makes some of them vanish.
 class Kinect {
  public:
   /// Takes at most 5 s.

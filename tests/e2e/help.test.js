@@ -20,6 +20,8 @@ for (const [screen, colorScheme] of [['phone', 'light'], ['desktop', 'dark']]) {
         assert.deepEqual(await complaints(page), [], title);
       }
       assert.ok(await overflow(page) <= 0, `${title} is ${await overflow(page)} pixels too wide`);
+      assert.ok(await page.evaluate(() => [...document.querySelectorAll('main ol')]
+          .every((list) => getComputedStyle(list).listStyleType === 'decimal')), `steps of ${title} have numbers`);
       await page.waitForFunction(() => [...document.images].every((image) => image.complete));
       assert.ok(await page.evaluate(() => [...document.images].every((image) => image.naturalWidth > 0)), title);
     }

@@ -10,12 +10,14 @@
 
 // The input is a list of the camera's answers: a byte for its length, doubled, then its bytes; the
 // length 255 is a failed transfer. A command's tag is put into answers that are long enough, or
-// else none would be taken. When the list ends, the device is gone. Parameters that are read make
-// sense.
+// else none would be taken. When the list ends, or after some answers, between which the driver
+// waits, the device is gone. Parameters that are read make sense.
 
 namespace {
 
 struct Gone {};
+
+constexpr int max_answers = 8;
 
 }  // namespace
 
@@ -23,6 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   using namespace octurn;
   std::span<const std::uint8_t> input(data, size);
   std::uint8_t tag = 0;
+  int answers = 0;
   CameraCommands commands({.write =
                                [&](auto message, auto /*timeout*/) {
                                  tag = message[6];
@@ -30,7 +33,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
                                },
                            .read =
                                [&](std::span<std::uint8_t> reply, auto /*timeout*/) {
-                                 if (input.empty()) {
+                                 if (input.empty() || ++answers > max_answers) {
                                    throw Gone();
                                  }
                                  const std::uint8_t told = input[0];

@@ -303,6 +303,27 @@ test('each build is cut from one sheet, with 3 mm for the saw', () => {
   assert.deepEqual([...cut].sort(), boards.map((board) => board[0]).sort());
 });
 
+test('the list of parts has a bolt for each hole that is used, and its nut and washers', () => {
+  const list = readFileSync(join(docs, 'hardware/parts.md'), 'utf8');
+  const pieces = (article) => list.match(new RegExp(`^\\| ${article}[^|]*\\| (\\d*) ?\\| (\\d*) ?\\|`, 'm'))
+      .slice(1).map(Number);
+  const added = (...counts) => counts[0].map((_, build) => counts.reduce((sum, count) => sum + count[build], 0));
+  const {boards} = values('boards');
+  const holes = (name, diameter) => boardHoles(boards, name).filter((hole) => hole[2] === diameter).length *
+      boards.find((board) => board[0] === name)[1];
+
+  const [long, short] = [pieces('Hexagon bolt M6 x 40'), pieces('Hexagon bolt M6 x 30')];
+  assert.deepEqual(long, [holes('Cheek', 6.6) + holes('Tower foot', 6.6), holes('Laser foot', 6.6)]);
+  assert.deepEqual(short, [holes('Shelf', 6.6), holes('Laser board', 6.6) / 3]); // at one of three heights
+  assert.deepEqual(added(pieces('Wing nut M6'), pieces('Nut M6')), added(long, short));
+  assert.deepEqual(pieces('Washer M6'), added(long, long, short, short));
+
+  const [sunk, plain] = [pieces('Countersunk screw M4 x 25'), pieces('Socket head screw M4 x 25')];
+  assert.deepEqual([sunk, plain], [Array(2).fill(holes('Platform', 4.4)), Array(2).fill(holes('Base', 4.4))]);
+  assert.deepEqual(pieces('Nut M4'), added(sunk, plain));
+  assert.deepEqual(pieces('Washer M4'), added(sunk, plain, plain)); // none below a sunk head
+});
+
 test('the list of parts names every printed part, and its prices add up', () => {
   const list = readFileSync(join(docs, 'hardware/parts.md'), 'utf8');
   for (const file of readdirSync(made).filter((name) => name.endsWith('.stl'))) {

@@ -60,6 +60,19 @@ const faintInForcedColours = (page) => page.evaluate(() => {
 /** The violations of a page in another language. Contrast is left out, as the colours are the first language's. */
 export const badWords = (page) => complaints(page, {rules: {'color-contrast': {enabled: false}}});
 
+/** The visible texts in which the end of a line could part a number from its unit. */
+export const parted = (page) => page.evaluate(() => {
+  const found = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
+  const texts = [];
+  while (found.nextNode()) {
+    const {parentElement, data} = found.currentNode;
+    if (parentElement.checkVisibility() && !parentElement.closest('script, noscript, select')) {
+      texts.push(data);
+    }
+  }
+  return texts.filter((text) => /\d (?:mm|cm|cm³|m|ms|s|min|h|byte|kB|MB|GB|%|V)(?![\p{L}\p{N}])/u.test(text));
+});
+
 /** By how much the page is wider than the screen, pixels. */
 export const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
 
@@ -94,6 +107,7 @@ export async function walk(browser, url, states, screen, colorScheme) {
     assert.deepEqual(await complaints(page), [], name);
     assert.deepEqual(await faintInOther(page, `${name}-${screen}`, colorScheme), [], `${name}, not ${colorScheme}`);
     assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+    assert.deepEqual(await parted(page), [], name);
     await picture(page, `${name}-${screen}-${colorScheme}`);
     await lookInForcedColours(page, `${name}-${screen}`);
   }

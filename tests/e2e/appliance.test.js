@@ -200,7 +200,7 @@ async function cancelUpdate(appliance, browser) {
   const update = page.getByRole('region', {name: 'Update'});
   await update.getByLabel('Choose a file').setInputFiles((await bundle(appliance, 40_000_000)).file);
   await update.getByRole('button', {name: 'Install'}).click();
-  await update.getByText(/^[1-9].* of 40 MB$/).waitFor();
+  await update.getByText(/^[1-9].* of 40\sMB$/).waitFor();
   await look(page, 'update-sending-desktop');
   await update.getByRole('button', {name: 'Cancel'}).click();
   await update.getByRole('button', {name: 'Install'}).waitFor();

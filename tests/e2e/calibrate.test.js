@@ -53,7 +53,7 @@ test('a crooked rig is calibrated on the page, and its models have flag and aeri
 
   await page.getByRole('button', {name: 'Measure with a turn'}).click();
   await page.getByRole('progressbar', {name: 'Measuring with a turn'}).waitFor();
-  await page.getByText(/^The axis was \d+\.\d mm and \d\.\d\d° off$/).waitFor();
+  await page.getByText(/^The axis was \d+\.\d\smm and \d\.\d\d° off$/).waitFor();
   const calibration = await ask(scanner, 'calibration');
   assert.equal(calibration.source, 'turn');
   assert.ok(calibration.after_mm < 1.2 && calibration.after_mm < calibration.before_mm);

@@ -16,8 +16,8 @@ async function checkByKeyboard(scanner, browser) {
   await page.getByRole('progressbar', {name: 'Checking'}).waitFor();
   await line(page, 'Sensor').waitFor();
   assert.ok(await page.getByRole('progressbar', {name: 'Checking'}).isHidden());
-  assert.match(await line(page, 'Sensor').innerText(), /OK\s+Kinect v1 \(simulated\), 640 x 480/);
-  assert.match(await line(page, 'Depth noise').innerText(), /\d\.\d\d mm on the platform/);
+  assert.match(await line(page, 'Sensor').innerText(), /OK\s+Kinect v1 \(simulated\), 640 × 480/);
+  assert.match(await line(page, 'Depth noise').innerText(), /\d\.\d\d\smm on the platform/);
   assert.ok(await button(page).evaluate((one) => one === document.activeElement));
   assert.deepEqual(faults, []);
   await page.context().close();
@@ -43,7 +43,7 @@ async function measurePlatform(scanner, browser) {
   await ask(scanner, 'calibration', 'PATCH', {platform_from_sensor: pose.map((row, i) => i === 2 ? [...row.slice(0, 3), row[3] + 0.008] : row)});
   const {page, faults} = await openPage(browser, `${scanner.url}#scanner`);
   await button(page).click();
-  assert.match(await line(page, 'Platform').innerText(), /\d+\.\d mm above where the calibration has it and (level|tilted by \d\.\d degrees)/);
+  assert.match(await line(page, 'Platform').innerText(), /\d+\.\d\smm above where the calibration has it and (level|tilted by \d\.\d degrees)/);
   await page.locator('.doctor').scrollIntoViewIfNeeded();
   await picture(page, 'check-platform');
   await line(page, 'Platform').getByRole('button', {name: 'Measure with a turn'}).click();

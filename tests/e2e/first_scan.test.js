@@ -104,7 +104,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   assert.ok(facts.includes(mesh.triangles.toLocaleString('en')), facts);
   assert.match(facts, /Watertight\s+Yes/);
   const sides = mesh.max.map((high, axis) => (high - mesh.min[axis]).toFixed(1));
-  assert.equal(await page.locator('#size').innerText(), `${sides.join(' × ')} mm`);
+  assert.equal(await page.locator('#size').innerText(), `${sides.join(' × ')}\u00a0mm`);
 
   await page.locator('#tools').waitFor();
   const share = await modelShare(page);
@@ -112,14 +112,14 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   await picture(page, 'finished');
 
   await page.getByRole('button', {name: 'Measure between two points'}).click();
-  for (const [place, text] of [[0.3, 'Click another one.'], [0.5, /^\d+\.\d mm \(ΔX /]]) {
+  for (const [place, text] of [[0.3, 'Click another one.'], [0.5, /^\d+\.\d\smm \(ΔX /]]) {
     await clickModel(page, place);
     await page.locator('#measured').filter({hasText: text}).waitFor();
   }
   const distance = parseFloat(await page.locator('#measured').innerText());
   assert.ok(distance > 1 && distance < Math.hypot(...sides), `${distance} mm between two points of the model`);
   await page.getByRole('button', {name: 'Cut the model open'}).click();
-  assert.equal(await page.locator('#cut-at').innerText(), `${((mesh.min[2] + mesh.max[2]) / 2).toFixed(1)} mm`);
+  assert.equal(await page.locator('#cut-at').innerText(), `${((mesh.min[2] + mesh.max[2]) / 2).toFixed(1)}\u00a0mm`);
   const left = await modelShare(page);
   assert.ok(left < 0.9 * share, `less of the model is left than ${share}, not ${left} of the view`);
   await picture(page, 'measured');

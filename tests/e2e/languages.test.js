@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {texts} from '../../web/texts/en.js';
-import {badWords, overflow} from './access.js';
+import {badWords, overflow, parted} from './access.js';
 import {awaitPlace, openBrowser, openPage, picture} from './browser.js';
 import {ask, scan, startScanner} from './scanner.js';
 
@@ -110,12 +110,14 @@ async function readOnPhone(scanner, browser, finished, locale) {
     await page.evaluate(() => document.querySelectorAll('main:not([hidden]) details').forEach((details) => { details.open = true; }));
     assert.ok(await overflow(page) <= 0, `${place} is ${await overflow(page)} pixels too wide in ${locale}`);
     assert.deepEqual(await badWords(page), [], `${place} in ${locale}`);
+    assert.deepEqual(await parted(page), [], `${place} in ${locale}`);
     await picture(page, `${locale}-${place === finished.id ? 'result' : place || 'scan'}-phone`);
   }
   for (const [name, reach] of Object.entries(states)) {
     await reach(page, scanner);
     assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide in ${locale}`);
     assert.deepEqual(await badWords(page), [], `${name} in ${locale}`);
+    assert.deepEqual(await parted(page), [], `${name} in ${locale}`);
     await picture(page, `${locale}-${name}-phone`);
   }
   assert.deepEqual(faults.filter((fault) => !fault.includes('WebGL')), []);  // this browser has no WebGL

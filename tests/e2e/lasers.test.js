@@ -48,7 +48,7 @@ test('a scale of depths is refused', async (t) => {
 test('the live picture is the camera\'s, with no distances in it', async (t) => {
   const scanner = await startScanner(t, {rig});
   const {page} = await openPage(await openBrowser(t), scanner.url);
-  await page.getByText(/^Live picture · /).waitFor();
+  await page.getByText(/^Live picture\s· /).waitFor();
   assert.equal(await page.locator('.scale').isVisible(), false);
   const drawn = await page.waitForFunction(() => {
     const canvas = /** @type {HTMLCanvasElement} */ (document.getElementById('depth'));

@@ -21,7 +21,7 @@ for (const screen of ['desktop', 'phone']) {
     const scanner = await startScanner(t);
     const {page, faults} = await openPage(await openBrowser(t), scanner.url, {screen});
     await waitForHint(page, 'good');
-    assert.match(await page.locator('#live-hint').innerText(), /Ready to scan\s+Seen: \d+ cm wide, \d+ cm high, \d+ cm away\./);
+    assert.match(await page.locator('#live-hint').innerText(), /Ready to scan\s+Seen: \d+\scm wide, \d+\scm high, \d+\scm away\./);
     const share = await colouredShare(page);
     assert.ok(share > 0.01 && share < 0.4, `the object in colour and the rest grey, not ${share}`);
     assert.ok((await page.locator('#live-lines [data-line=ring]').getAttribute('d')).length > 100, 'the platform is drawn in');
@@ -37,7 +37,7 @@ for (const screen of ['desktop', 'phone']) {
     await waitForHint(page, 'empty');
 
     await page.locator('#depth').hover({position: {x: 100, y: 100}});
-    assert.match(await page.locator('#live-pointed').innerText(), /cm|2 m or more|No reading/);
+    assert.match(await page.locator('#live-pointed').innerText(), /cm|2\sm or more|No reading/);
     assert.deepEqual(faults, []);
   });
 }

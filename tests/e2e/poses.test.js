@@ -98,7 +98,7 @@ test('an object is scanned, turned over, scanned again, and downloaded as one mo
   await add.waitFor();
   await add.click();
   await page.getByText('Side 2 is in the model').waitFor();
-  assert.match(await page.locator('#side-rows').innerText(), /shares \d+% of its surface[^]*fits to \d\.\d\d mm/);
+  assert.match(await page.locator('#side-rows').innerText(), /shares \d+% of its surface[^]*fits to \d\.\d\d\smm/);
 
   const {scans: [pose, first]} = await ask(scanner, 'scans');
   assert.deepEqual([pose.pose_of.scan, first.poses.length, first.build], [first.id, 1, 1]);

@@ -62,7 +62,7 @@ test('a scan whose sensor fails pauses, says why, and can be ended with what it 
   await chooseQuickScan(page, 4);
   await page.getByRole('button', {name: 'Start scan'}).click();
   await page.locator('#phase').getByText('Trying stop 2 of 4 again').waitFor();
-  await page.locator('#left').getByText(/^pauses in \d+ s$/).waitFor();
+  await page.locator('#left').getByText(/^pauses in \d+\ss$/).waitFor();
   await page.getByText('Scan paused', {exact: true}).waitFor();
   const trouble = await page.locator('#trouble').innerText();
   assert.match(trouble, /no frame at 90 degrees\.[^]*resume the scan/);

@@ -92,7 +92,7 @@ async function warnings(browser, url) {
   const page = await openWith(browser, url, told);
   const lines = page.locator('#warnings li');
   await lines.first().waitFor();
-  assert.match((await lines.allInnerTexts()).join(), /^Supply voltage: 4\.5 V\. Use another supply\.$/, 'a clock that is right is no warning');
+  assert.match((await lines.allInnerTexts()).join(), /^Supply voltage: 4\.5\sV\. Use another supply\.$/, 'a clock that is right is no warning');
   await lines.getByRole('button', {name: 'Supply voltage: 4.5 V.'}).click();
   await lines.getByRole('button', {expanded: true}).waitFor();
   await page.getByRole('button', {name: 'Dismiss: Supply voltage'}).click();

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFile, readdir} from 'node:fs/promises';
 import {test} from 'node:test';
 
-import {languageOf, languages, localeOf, text, translated} from '../../web/base/texts.js';
+import {languageOf, languages, localeOf, text, translated, typeset} from '../../web/base/texts.js';
 
 const folder = new URL('../../web/', import.meta.url);
 const files = new Map(await Promise.all(Object.keys(languages).map(async (language) =>
@@ -119,6 +119,10 @@ test('no word of the page stands outside the texts', () => {
   }
 });
 
+test('no source has a lookbehind, with which Safari before 16.4 would read none of the page', () => {
+  assert.deepEqual([...written].filter(([, source]) => /\(\?<[=!]/.test(source)).map(([name]) => name), []);
+});
+
 test('the language is the chosen one, or the first of the browser that the page knows', () => {
   assert.equal(languageOf(null, ['pt-BR', 'de-AT', 'en']), 'de');
   assert.equal(languageOf('fr', ['de']), 'fr');
@@ -131,6 +135,20 @@ test('a sentence that is not known stays as it is, whatever is in it', () => {
   for (const sentence of ['', '640 x 480', '0.02, 0.03; 4', ', ', 'constructor', 'nobody has said this, 3 times; never']) {
     assert.equal(translated(sentence), sentence);
   }
+});
+
+test('a number and its unit stay on one line, in every language', () => {
+  const units = /\d (?:mm|cm|cm³|m|ms|s|min|h|MB|%|V)(?![\p{L}\p{N}])/u;
+  const parted = (words) => [...words].flatMap((sentence) => {
+    const filled = sentence.replace(/\{\w*\}/g, '36');
+    return units.test(typeset(filled)) ? [filled] : [];
+  });
+  for (const {texts, said} of files.values()) {
+    const all = Object.values(texts).flatMap((one) => typeof one === 'string' ? [one] : Object.values(one));
+    assert.deepEqual(parted([...all, ...Object.values(said)]), []);
+  }
+  assert.equal(typeset('36 mm · 5 min, 3 s; 0.5 s a stop, 640 x 480, 97 %, 12 parts, 4 mA, 7 hours'),
+      '36\u00a0mm\u00a0· 5\u00a0min, 3\u00a0s; 0.5\u00a0s a stop, 640 × 480, 97%, 12 parts, 4 mA, 7 hours');
 });
 
 test('numbers in a text lose none of their digits', () => {

@@ -1,13 +1,16 @@
 // DOM functions shared by the page's modules.
 
+import {typeset} from './texts.js';
+
 /** @param {string} id @returns {any} the element with that id */
 export const element = (id) => document.getElementById(id);
 
 /** Sets text only if it differs, so that selections stay and screen readers announce only changes.
  * @param {Element} target @param {string} text */
 export function setText(target, text) {
-  if (target.textContent !== text) {
-    target.textContent = text;
+  const words = typeset(text);
+  if (target.textContent !== words) {
+    target.textContent = words;
   }
 }
 

@@ -100,6 +100,18 @@ export function translated(sentence) {
   return known.replace(/\{(\d?)\}/g, (_, place) => shown[place ? Number(place) - 1 : next++] ?? '');
 }
 
+const unit = /(\d) (?=(?:[cm]?m[²³]?|m?s|min|h|[kMGT]?B|bytes?|°|V)(?![\p{L}\p{N}]))/gu;
+
+const beforePercent = new Intl.NumberFormat(locale, {style: 'percent'}).format(1).slice(3, -1);  // "100 %" or "100%"
+
+/**
+ * Keeps a number and its unit on one line, and a dot between two parts on the line of the first. Sets 640 x 480 as 640 × 480, and
+ * percentages as the language does. Pure.
+ * @param {string} words
+ */
+export const typeset = (words) => words.replace(/(\d) (?=%)/g, `$1${beforePercent}`).replace(unit, '$1\u00a0')
+    .replace(/(\S) · /g, '$1\u00a0· ').replace(/(\d) x (?=\d)/g, '$1 × ');
+
 const attributes = {'data-text-label': 'aria-label', 'data-text-title': 'title', 'data-text-placeholder': 'placeholder'};
 
 /**
@@ -111,7 +123,7 @@ export function fillTexts(root) {
     fillTexts(template.content);
   }
   for (const element of root.querySelectorAll('[data-text]')) {
-    element.textContent = text(element.getAttribute('data-text') ?? '');
+    element.textContent = typeset(text(element.getAttribute('data-text') ?? ''));
   }
   for (const link of language === 'en' ? [] : root.querySelectorAll('a[href^="help/guide.html"]')) {
     link.setAttribute('href', (link.getAttribute('href') ?? '').replace('guide.', `guide.${language}.`));

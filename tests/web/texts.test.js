@@ -92,15 +92,31 @@ test('each sentence that has a translation is one of the scanner', async () => {
   }
 });
 
+test('whatever the check advises has a translation', async () => {
+  const folder = new URL(`file://${process.env.OCTURN_SOURCE}/firmware-app/src/`);
+  const doctor = (await readdir(new URL('doctor/', folder))).filter((name) => name.endsWith('.cpp'));
+  const names = [...doctor.map((name) => `doctor/${name}`), 'turntable/gpio_lines.cpp'];
+  const code = await Promise.all(names.map((name) => readFile(new URL(name, folder), 'utf8')));
+  const joined = code.join('\n').replace(/"\s*\n\s*"/g, '');
+  const literals = [...joined.matchAll(/"((?:[^"\\\n]|\\.)*)"/g)].map(([, words]) => words);
+  const advice = literals.filter((words) => /^[A-Z][a-z]+ .*\.$/.test(words))
+      .map((words) => words.replace(/-?\d+(?:\.\d+)?/g, '{}'));
+  assert.ok(advice.length > 40, `${advice.length} sentences`);
+  assert.deepEqual(advice.filter((words) => !Object.hasOwn(files.get('de').said, words)), []);
+});
+
 test('German, French and Spanish are not English', () => {
   const wordy = Object.entries(english).filter(([, text]) => typeof text === 'string' && /[a-z]{3,} [a-z]{3,}/.test(text));
   assert.ok(wordy.length > 150);
   for (const [language, {texts, said}] of files) {
-    if (language !== 'en') {
+    const translations = Object.keys(files.get('de').said).sort();
+    if (language === 'en') {
+      assert.deepEqual(Object.keys(said).filter((sentence) => !translations.includes(sentence)), []);
+    } else {
       assert.deepEqual(wordy.filter(([key, text]) => texts[key] === text).map(([key]) => key), [], language);
       assert.ok(Object.keys(said).length > 100, language);
+      assert.deepEqual(Object.keys(said).sort(), translations, language);
     }
-    assert.deepEqual(Object.keys(said).sort(), language === 'en' ? [] : Object.keys(files.get('de').said).sort(), language);
   }
 });
 
@@ -149,6 +165,18 @@ test('a number and its unit stay on one line, in every language', () => {
   }
   assert.equal(typeset('36 mm · 5 min, 3 s; 0.5 s a stop, 640 x 480, 97 %, 12 parts, 4 mA, 7 hours'),
       '36\u00a0mm\u00a0· 5\u00a0min, 3\u00a0s; 0.5\u00a0s a stop, 640 × 480, 97%, 12 parts, 4 mA, 7 hours');
+});
+
+test('no sentence on the page asks for a shell or a file of settings', () => {
+  const shell = /(?:^| )--[a-z]|sudo|_mb\b|octurn\.json|octurn (?:calibrate|set)/;
+  for (const {said} of files.values()) {
+    assert.deepEqual(Object.values(said).filter((words) => shell.test(words)), []);
+  }
+  assert.equal(translated('End other programs, or lower memory_limit_mb in octurn.json.'),
+      'End other programs, or lower Memory in the settings.');
+  for (const before of ['', 'sensor: ', 'no sensor was found: ']) {
+    assert.equal(translated(`${before}kinect: none is plugged in`), 'no Kinect is plugged in');
+  }
 });
 
 test('numbers in a text lose none of their digits', () => {

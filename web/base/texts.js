@@ -76,6 +76,8 @@ const value = /"[^"]*"|-?\d+(?:\.\d+)?/g;  // a value in the scanner's sentences
 /** The translation of a sentence, with {} for each value, or null. @param {string} sentence */
 const saidOf = (sentence) => Object.hasOwn(said, sentence.replace(value, '{}')) ? said[sentence.replace(value, '{}')] : null;
 
+const speaker = /^(?:sensor|no sensor was found): (?=\w+: )/;  // before the name of the driver that says the rest
+
 /** Translates a sentence of which only the parts are known, such as "97 % of it has readings, 640 x 480". @param {string} sentence @returns {string} */
 function translatedParts(sentence) {
   const parts = sentence.split(/(, |; )/);
@@ -90,8 +92,9 @@ function translatedParts(sentence) {
  * @param {string} sentence
  */
 export function translated(sentence) {
-  const values = sentence.match(value) ?? [];
-  const known = saidOf(sentence);
+  const words = sentence.replace(speaker, '');
+  const values = words.match(value) ?? [];
+  const known = saidOf(words);
   if (known === null) {
     return translatedParts(sentence);
   }

@@ -1,8 +1,27 @@
 // The page's words in English. {values} are put in by text() of texts.js; where a number asks for a form of its own, there
 // is one for each of the language's plural categories, chosen by `count`.
 
-/** The scanner's sentences are English. @type {Record<string, string>} */
-export const said = {};
+/**
+ * The scanner's sentences are English. These are worded for a page whose reader has no shell, and no file of settings.
+ * @type {Record<string, string>}
+ */
+export const said = {
+  'kinect: none is plugged in': 'no Kinect is plugged in',
+  'End other programs, or lower memory_limit_mb in octurn.json.': 'End other programs, or lower Memory in the settings.',
+  'Correct the turntable\'s lines in octurn.json; they are called GPIO{} to GPIO{}.': 'Correct the lines under Wiring in the settings; they are called GPIO{} to GPIO{}.',
+  'End what uses them, or choose other lines in octurn.json and rewire.': 'End what uses them, or choose other lines under Wiring in the settings and rewire.',
+  'Run this on a Raspberry Pi whose kernel knows its GPIO chip, or add --simulate.': 'Octurn turns a platform by the GPIO header of a Raspberry Pi.',
+  'Let this user use GPIO: sudo adduser $USER gpio, and log in again.': 'Add the user that runs Octurn to the group gpio, and start Octurn again.',
+  'A map belongs to one sensor. Make it of a recording with octurn calibrate --wall.': 'A map belongs to one sensor, and this one cannot be told from others.',
+  'Make the sensor\'s map, calibrate the rig, and scan with more stops or finer.': 'Correct the sensor’s unevenness, calibrate, and scan with more snapshots or finer detail.',
+  'Make the sensor\'s map from a bare wall: models become up to four times more accurate.': 'Correct the sensor’s unevenness: models become up to four times more accurate.',
+  'Plug the sensor into a USB port of this machine.': 'Plug the sensor into a USB port of the scanner.',
+  'Install libopenni{}{}, whose udev rules open it, and plug it in again.': 'Unplug the sensor, and plug it in again. If that does not help, install libopenni{}{}, whose rules let Octurn open it.',
+  'Let this user write there, or choose another folder with data in octurn.json.': 'Octurn has to be allowed to write there.',
+  'Correct the lines in octurn.json; they are called GPIO{} to GPIO{}.': 'Correct the lines under Wiring in the settings; they are called GPIO{} to GPIO{}.',
+  'End what uses it, or choose another line in octurn.json.': 'End what uses it, or choose another line under Wiring in the settings.',
+  'Start this machine again.': 'Restart the scanner.',
+};
 
 export const texts = {
   // What every part has

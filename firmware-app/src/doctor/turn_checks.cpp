@@ -450,9 +450,9 @@ TurnFinding check_return(const TurnMeasurement& turn) {
   const std::string measured = degrees(std::abs(turn.return_deg)) + " from where it began";
   return {.finding = loses_steps(turn)
                          ? back.fault(measured,
-                                      "The motor loses steps: lower start_speed_deg_per_s and "
-                                      "acceleration_deg_per_s2, give it more current, and see that "
-                                      "nothing rubs.")
+                                      "The motor loses steps: lower its start speed and its "
+                                      "acceleration, give it more current, and see that nothing "
+                                      "rubs.")
                          : back.ok(measured)};
 }
 

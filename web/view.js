@@ -146,14 +146,7 @@ function showNotices({isAway, isScanElsewhere, problem, faults}) {
     setText(element(`problem-${line}`), problem?.[line] ?? '');
   }
   show(element('faults'), faults.length > 0);
-  const lines = part(element('faults'), 'ul');
-  if (lines.textContent !== faults.join('')) {
-    lines.replaceChildren(...faults.map((fault) => {
-      const line = document.createElement('li');
-      line.textContent = fault;
-      return line;
-    }));
-  }
+  list(part(element('faults'), 'ul'), [...new Set(faults)], (fault) => fault, 'fault', setText);
 }
 
 /** @type {(screen: Screen) => void} */

@@ -13,6 +13,9 @@ test('without a sensor the page says so, and what to do', async (t) => {
   const start = page.getByRole('button', {name: 'Start scan'});
   assert.equal(await start.getAttribute('aria-disabled'), 'true');
   await start.click({force: true});
+  const said = (await page.locator('#faults li').first().innerText()).replace(/\.$/, '');
+  await page.waitForFunction((words) => document.body.innerText.split(words).length === 2, said);  // it is said once
+  await page.locator('#no-picture').getByText(/power supply/).waitFor();  // and beside it, what to do
   await picture(page, 'no-sensor');
   assert.deepEqual((await ask(scanner, 'scans')).scans, [], 'no scan was tried');
 

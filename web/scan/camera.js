@@ -8,7 +8,7 @@ import {spaceChosen} from './form.js';
 import {sentence} from '../base/format.js';
 import {hintOf, steadyHint} from '../sensor/live_hints.js';
 import {drawLines, prepareDistance} from '../sensor/rig_picture.js';
-import {text} from '../base/texts.js';
+import {text, typeset} from '../base/texts.js';
 
 /** @typedef {import('../sensor/live_picture.js').Rig} Rig */
 /** @typedef {import('../sensor/live_reader.js').Reading} Reading */
@@ -102,14 +102,12 @@ function showHint({seen, moved}, rig) {
 /** @type {(brightness: Uint8Array) => void} */
 let seeDistances = () => {};
 
-/** Why there is no picture. What the form says of a device is not said twice. @param {unknown} error */
+/** Why there is no picture, and what to do. What the panel beside it says is not said twice. @param {unknown} error */
 function troubleText(error) {
-  if (!element('faults').hidden) {
-    return text('stage.none');
-  }
   const {detail, title, hint} = error instanceof api.Problem ? error :
     new api.Problem('picture', text('problem.picture'));
-  return [detail || title, hint].map(sentence).join(' ');
+  const told = element('panel').innerText;
+  return [detail || title, hint].map(sentence).filter((words) => !told.includes(typeset(words))).join(' ');
 }
 
 async function showPicture() {

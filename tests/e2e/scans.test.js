@@ -3,7 +3,7 @@ import {basename} from 'node:path';
 import {test} from 'node:test';
 
 import {emptyPage, goTo, openBrowser, openPage, picture} from './browser.js';
-import {ask, scan, scanFolders, startScanner} from './scanner.js';
+import {ask, quick, scan, scanFolders, startScanner} from './scanner.js';
 
 const draft = {snapshots: 3, leaf_size_mm: 8, filter: 'basic'};
 
@@ -158,4 +158,122 @@ test('quick clicks all count, and a page whose storage is blocked works', async 
   await rows.nth(1).getByRole('button', {name: /^Delete/}).click();
   answer();
   await page.getByText('No scans yet').waitFor();
+});
+
+/** Waits until something on the page is so. */
+const becomes = (page, condition, argument = undefined) => page.waitForFunction(condition, argument, {polling: 100});
+const keysIn = (page) => page.locator('#rows > li').evaluateAll((cards) => cards.map((card) => card.dataset.key));
+const remove = (page, index) => page.locator('#rows > li').nth(index).getByRole('button', {name: /^Delete/}).click();
+
+/** Cards of scans without a name, in two columns on a phone, can be told apart. One whose picture does not come has none. */
+async function compareCards(browser, url) {
+  const {page} = await openPage(browser, 'about:blank', {screen: 'phone'});
+  await page.setViewportSize({width: 360, height: 640});
+  await page.route('**/thumbnail.png*', (route) => route.fulfill({status: 500}));
+  await page.goto(`${url}#library`);
+  await page.locator('#rows > li').nth(3).waitFor();
+  await becomes(page, () => [...document.querySelectorAll('#rows img')].slice(0, 2).every((image) => image.hidden));
+  assert.ok(await page.locator('#rows .scan-picture svg').first().isVisible());
+  const cards = await page.locator('#rows > li').evaluateAll((all) => all.map((card) => {
+    const name = card.querySelector('.scan-name');
+    return {left: card.getBoundingClientRect().left, top: card.getBoundingClientRect().top, name: name.textContent,
+      cut: Math.max(name.scrollHeight - name.clientHeight, name.scrollWidth - name.clientWidth)};
+  }));
+  assert.equal(new Set(cards.map(({left}) => left)).size, 2, 'two columns');
+  assert.equal(cards[0].top, cards[1].top);
+  assert.ok(cards.every(({cut, name}) => cut <= 0 && /\d:\d\d/.test(name)), JSON.stringify(cards));
+  await picture(page, 'library-unnamed-phone');
+  await page.context().close();
+}
+
+/** Back from a scan the library is where it was left, and a search lasts through a reload. */
+async function keepPlace(page) {
+  await page.setViewportSize({width: 390, height: 500});
+  await page.evaluate(() => scrollTo(0, 300));
+  await page.locator('#rows > li').nth(2).locator('.scan-name').evaluate((link) => link.click());
+  await page.locator('#details-name').waitFor();
+  await page.goBack();
+  await becomes(page, () => scrollY === 300);
+  await page.setViewportSize({width: 1280, height: 860});
+  await page.getByLabel('Search the scans').fill('found by nobody');
+  await page.getByText('No scan has that in its name or date.').waitFor();
+  await page.reload();
+  await page.getByText('No scan has that in its name or date.').waitFor();
+  assert.equal(await page.getByLabel('Search the scans').inputValue(), 'found by nobody');
+  await page.getByLabel('Search the scans').fill('');
+}
+
+/** The focus goes on to the next card, and Undo counts while another delete waits for its answer. */
+async function removeAndUndo(page) {
+  const [first, second, ...others] = await keysIn(page);
+  await remove(page, 0);
+  await becomes(page, (key) => document.activeElement?.closest('li')?.dataset.key === key, second);
+  let answer = () => {};
+  const held = new Promise((resolve) => {
+    answer = () => resolve(null);
+  });
+  await page.route('**/api/v1/scans/*', async (route) => {
+    await held;
+    await route.continue();
+  });
+  await remove(page, 0);
+  await page.getByRole('status').getByRole('button', {name: 'Undo'}).click();
+  answer();
+  const hasKeys = (keys) => [...document.querySelectorAll('#rows > li')].map(({dataset}) => dataset.key).join() === keys;
+  await becomes(page, hasKeys, [first, ...others].join());
+  await page.unroute('**/api/v1/scans/*');
+  await page.locator('#bin').locator('summary').click();
+  await page.getByRole('button', {name: /^Restore/}).click();
+  await page.locator('#rows > li').nth(others.length + 1).waitFor();
+}
+
+/** Of several chosen scans those before a refusal are gone, and Undo brings them back. */
+async function removeChosen(page) {
+  const keys = await keysIn(page);
+  await page.getByRole('button', {name: 'Select', exact: true}).click();
+  for (const index of [0, 1, 2]) {
+    await page.locator('#rows > li').nth(index).getByRole('checkbox').check();
+  }
+  await page.route(`**/api/v1/scans/${keys[1]}`, (route) => route.fulfill({
+    status: 409, contentType: 'application/problem+json',
+    json: {code: 'busy', title: 'Busy', detail: 'it is read', parameters: {}, hint: ''},
+  }));
+  await page.getByRole('button', {name: 'Delete 3'}).click();
+  await page.getByRole('alert').filter({hasText: 'Not all scans were deleted'}).waitFor();
+  await becomes(page, (count) => document.querySelectorAll('#rows > li').length === count, keys.length - 1);
+  assert.deepEqual(await keysIn(page), keys.slice(1));
+  await page.getByRole('button', {name: 'Dismiss'}).click();
+  await page.getByRole('status').getByRole('button', {name: 'Undo'}).click();
+  await becomes(page, (count) => document.querySelectorAll('#rows > li').length === count, keys.length);
+}
+
+/** The address of no scan shows the form, and asks for nothing. */
+async function openNoScan(page) {
+  const missing = [];
+  page.on('response', (response) => response.status() === 404 && missing.push(response.url()));
+  await page.evaluate(() => {
+    location.hash = 'nonsense';
+  });
+  await page.getByRole('button', {name: 'Start scan'}).waitFor();
+  assert.equal(await page.evaluate(() => location.hash), '');
+  const tab = page.getByRole('navigation').getByRole('link', {name: 'Scan', exact: true});
+  assert.equal(await tab.getAttribute('aria-current'), 'page');
+  await page.waitForTimeout(2500);  // two polls
+  assert.deepEqual(missing, []);
+}
+
+test('the library loses neither its place nor what was asked of it', async (t) => {
+  const scanner = await startScanner(t, quick);
+  for (let count = 0; count < 4; ++count) {
+    await scan(scanner, draft);
+  }
+  const browser = await openBrowser(t);
+  await t.test('cards without names', () => compareCards(browser, scanner.url));
+  const {page} = await openPage(browser, `${scanner.url}#library`);
+  await page.locator('#rows > li').nth(3).waitFor();
+  await t.test('back from a scan, and after a reload', () => keepPlace(page));
+  await page.locator('#rows > li').nth(3).waitFor();
+  await t.test('by a delete and its undoing', () => removeAndUndo(page));
+  await t.test('by the delete of several that is refused', () => removeChosen(page));
+  await t.test('an address of no scan', () => openNoScan(page));
 });

@@ -2,17 +2,24 @@
 
 import {prepareBin} from '../scan/bin.js';
 import {element} from '../base/dom.js';
+import {note, noted} from '../base/storage.js';
 import * as library from './library.js';
 import {showLibrary} from './library_view.js';
 import {change, state} from '../page.js';
 import {emptyBin, importScan, remove, removeChosen, rename, restore} from '../scan/scan_actions.js';
 import * as states from '../state.js';
 
+const memory = 'octurn-search';  // storage key of the search, until the tab is closed
+
 /** Attaches the handlers of library.html. */
 export function prepare() {
   const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
-  element('library-query').addEventListener('input', (/** @type {any} */ event) =>
-    change(states.withLibrary(state, {query: event.target.value, limit: library.step})));
+  const query = element('library-query');
+  query.value = noted(memory, 'sessionStorage') ?? '';
+  query.addEventListener('input', () => {
+    note(memory, query.value, 'sessionStorage');
+    change(states.withLibrary(state, {query: query.value, limit: library.step}));
+  });
   element('library-order').addEventListener('change', (/** @type {any} */ event) =>
     change(states.withLibrary(state, {order: event.target.value})));
   element('import').addEventListener('change', (/** @type {any} */ event) => {
@@ -42,4 +49,5 @@ export function prepare() {
   });
   prepareBin({restore: (id) => restore([id]), empty: emptyBin});
   showLibrary();
+  change(states.withLibrary(state, {query: query.value}));
 }

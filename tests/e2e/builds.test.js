@@ -76,6 +76,11 @@ async function buildAgain(scanner, {page, faults, made, rows}, screen) {
   assert.deepEqual([builds[2].settings.leaf_size_mm, builds[2].settings.clip_mm[5], builds[2].chosen], [4, 60, false]);
   assert.ok(builds[2].model.size_mm[2] < 70);
   await page.locator('#tools').waitFor();
+  await rows.nth(0).getByRole('button', {name: 'As scanned', exact: true}).click();
+  await page.waitForFunction(() => document.querySelector('#build-form [data-clip="5"]').value === '400');
+  assert.ok(await form.getByLabel('Medium').isChecked(), 'the form has the settings of the model in view');
+  await rows.nth(2).locator('.build-show').click();
+  await page.locator('#tools').waitFor();
 
   await rows.nth(2).getByRole('button', {name: 'Use this model'}).click();
   await rows.nth(2).getByText('In use').waitFor();

@@ -22,7 +22,8 @@ let isHere = false;  // whether the fragment is loaded
 let isBegun = false;
 /** @type {Builds | null} */
 let last = null;
-let filledFor = '';  // the scan whose settings are in the form
+let filledFor = '';  // the scan
+let filledWith = '';  // the settings in the form, of the model in view
 
 const form = () => /** @type {HTMLFormElement} */ (element('build-form'));
 const clipFields = () => /** @type {HTMLInputElement[]} */ ([...form().querySelectorAll('[data-clip]')])
@@ -126,10 +127,13 @@ export function renderBuilds(builds) {
     return;
   }
   if (filledFor !== builds.scan) {
-    filledFor = builds.scan;
     element('build-again').open = false;
+  }
+  const settings = JSON.stringify(builds.settings);
+  if (filledFor !== builds.scan || filledWith !== settings) {
     fill(builds.settings);
   }
+  [filledFor, filledWith] = [builds.scan, settings];
   showRows(builds);
   showGoing(builds);
   element('build-start').setAttribute('aria-disabled', String(builds.isBusy));

@@ -15,20 +15,24 @@ const screens = {
   phone: {viewport: {width: 390, height: 844}, deviceScaleFactor: 2, isMobile: true, hasTouch: true},
 };
 
-/** @type {Map<boolean, Promise<import('playwright-core').Browser>>} by hasWebGl: one for all tests of a file, as a start takes a second */
+/**
+ * By options: one for all tests of a file, as a start takes a second.
+ * @type {Map<string, Promise<import('playwright-core').Browser>>}
+ */
 const browsers = new Map();
 after(() => Promise.all([...browsers.values()].map(async (browser) => (await browser).close())));
 
 /**
  * @param {import('node:test').TestContext} t  at its end all pages are closed
- * @param {{hasWebGl?: boolean}} options
+ * @param {{hasWebGl?: boolean, letters?: number}} options  letters: the font size that its user has set, pixels
  */
-export async function openBrowser(t, {hasWebGl = true} = {}) {
-  const opened = browsers.get(hasWebGl) ?? chromium.launch({
+export async function openBrowser(t, {hasWebGl = true, letters = 16} = {}) {
+  const key = `${hasWebGl} ${letters}`;
+  const opened = browsers.get(key) ?? chromium.launch({
     executablePath: process.env.CHROMIUM ?? '/usr/bin/chromium-headless-shell',
-    args: [...noBackgroundTraffic, ...(hasWebGl ? softwareWebGl : noWebGl), ...(process.getuid?.() === 0 ? ['--no-sandbox'] : [])],
+    args: [`--blink-settings=defaultFontSize=${letters}`, ...noBackgroundTraffic, ...(hasWebGl ? softwareWebGl : noWebGl), ...(process.getuid?.() === 0 ? ['--no-sandbox'] : [])],
   });
-  browsers.set(hasWebGl, opened);
+  browsers.set(key, opened);
   const browser = await opened;
   t.after(() => Promise.all(browser.contexts().map((context) => context.close())));
   return browser;

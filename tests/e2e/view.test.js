@@ -198,6 +198,22 @@ async function largeLetters(page, states) {
   }
 }
 
+/** In a browser whose user has set letters of twice the size, a phone has verdict and Download in its window. */
+async function largestLetters(t, url) {
+  const {page} = await openPage(await openBrowser(t, {hasWebGl: false, letters: 32}), url, {screen: 'phone'});
+  await page.locator('#verdict').waitFor();
+  for (const [name, size] of Object.entries({usual: [360, 740], phone: screens.phone})) {
+    await resize(page, size);
+    assert.equal(await page.evaluate(() => getComputedStyle(document.documentElement).fontSize), '32px');
+    for (const id of ['verdict', 'download']) {
+      assert.equal(await hiddenPart(page, id), '', name);
+    }
+    assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+    await picture(page, `result-largest-${name}`, {fullPage: false});
+  }
+  await page.context().close();
+}
+
 /** A page in a tab that nobody looks at, which notes the sounds that it plays. */
 async function openHidden(browser, url) {
   const {page} = await openPage(browser, 'about:blank');
@@ -304,6 +320,7 @@ test('what matters is in sight on every screen', async (t) => {
   await t.test('model, verdict and Download at the end of a scan', () => result(opened.page));
   await t.test('the model by how many snapshots saw each place', () => views(opened.page));
   await t.test('all of it in large letters', () => largeLetters(opened.page, 'result'));
+  await t.test('verdict and Download in the largest letters', () => largestLetters(t, `${scanner.url}#${id}`));
   assert.deepEqual(opened.faults, []);
   await opened.page.context().close();
   await t.test('a large model that is dragged, by its coarse mesh', () => dragLarge(browser, scanner.url, id));

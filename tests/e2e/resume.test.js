@@ -28,6 +28,19 @@ test('a scan that was interrupted by the scanner\'s end is resumed on the page, 
   assert.equal(scan.snapshots_done, snapshots);
 });
 
+/** Who comes to a scanner with a paused scan is told of it, and its page does not call the scanner ready. */
+async function meetPaused(browser, url) {
+  const {page} = await openPage(browser, url);
+  await page.locator('#live-hint').getByText('Ready to scan').waitFor();
+  await page.locator('#unfinished').getByText(/is not finished: \d+ of 200 snapshots\./).waitFor();
+  await page.getByRole('link', {name: 'Continue or end it'}).click();
+  await page.getByText('Scan paused', {exact: true}).waitFor();
+  assert.ok(await page.getByRole('button', {name: 'Resume'}).isVisible());
+  await page.locator('#live-hint').waitFor({state: 'hidden'});
+  await picture(page, 'paused-met');
+  await page.context().close();
+}
+
 test('a scan is paused and resumed, ended and resumed, by a tap each', async (t) => {
   const scanner = await startScanner(t);
   const {page, faults} = await openPage(await openBrowser(t), scanner.url, {screen: 'phone'});
@@ -40,6 +53,7 @@ test('a scan is paused and resumed, ended and resumed, by a tap each', async (t)
   await picture(page, 'progress-phone');
   await bar.click();
   await page.getByText('Scan paused', {exact: true}).waitFor();
+  await meetPaused(page.context().browser(), scanner.url);
   await page.getByRole('button', {name: 'Resume'}).click();
   await page.locator('#cancel').click();
   await page.getByText('Scan ended', {exact: true}).waitFor();

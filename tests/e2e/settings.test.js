@@ -125,6 +125,9 @@ async function fits(scanner, browser, screen, colorScheme) {
   const {page, faults} = await openSettings(browser, scanner, {screen, colorScheme});
   const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
   assert.ok(overflow <= 0, `${overflow} pixels too wide`);
+  const middles = await page.locator('.secret').evaluateAll((fields) => fields.filter((field) => field.checkVisibility())
+      .map((field) => [...field.children].map((part) => part.getBoundingClientRect()).map(({top, height}) => top + height / 2)));
+  assert.ok(middles.length > 0 && middles.every(([field, button]) => Math.abs(field - button) < 2), `Show stands beside its field: ${middles}`);
   await picture(page, `settings-${screen}-${colorScheme}`);
   assert.deepEqual(faults, []);
 }

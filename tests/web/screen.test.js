@@ -33,6 +33,12 @@ test('progress tells the stop, the share and the time left', () => {
   assert.deepEqual(progress.steps.map(({state}) => state), ['done', 'now', 'next']);
 });
 
+test('a scan that was asked to stop says so at once', () => {
+  const {progress} = screenOf(states.withStopping(scanning({}), running.id));
+  assert.deepEqual([progress.text, progress.isStopping], ['Stopping…', true]);
+  assert.ok(!screenOf(scanning({})).progress.isStopping);
+});
+
 test('the last stop is not the end: the model is still to be built', () => {
   const {progress, title} = screenOf(scanning({phase: 'building', snapshots_done: 36, seconds_left: null}));
   assert.equal(progress.text, 'Building the model');

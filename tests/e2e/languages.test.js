@@ -21,7 +21,7 @@ const strangeAnswer = (value) => Array.isArray(value) ? value.map(strangeAnswer)
   Object.fromEntries(Object.entries(value).map(([key, inner]) => [key, said.has(key) && typeof inner === 'string' ? strange(inner) : strangeAnswer(inner)]));
 
 /** Names, units, formats and other words that are the same in every language. */
-const known = /Octurn|octurn|\b(mm|cm|cm³|m|s|min|h|ms|[kMG]?B|byte|STL|3MF|PLY|GLB|AM|PM|UTC|Home Assistant|OctoPrint|Moonraker|PrusaLink|English|Deutsch|Español|Français|GPIO\d+|X|Y|Z)\b|\b[A-Z][a-z]{2} \d+, \d{4}|\d+e\d+|https?:\S+/g;
+const known = /Octurn|octurn|\b(mm|cm|cm³|m|s|min|h|ms|[kMG]?B|byte|STL|3MF|PLY|GLB|OBJ|AM|PM|UTC|Home Assistant|OctoPrint|Moonraker|PrusaLink|DRV8825|TMC2209|English|Deutsch|Español|Français|GPIO\d+|X|Y|Z)\b|\b[A-Z][a-z]{2} \d+, \d{4}|\d+e\d+|\d+\.\d+\.\d+~\S+|https?:\S+/g;
 
 /** Every text that is visible or in an accessible name now and has a letter of A to Z. */
 const lettersLeft = (page) => page.evaluate(() => {
@@ -86,6 +86,7 @@ const states = {
     await page.goto(`${new URL('/', page.url())}#scanner`);
     await page.locator('#examine').click();
     await page.locator('.finding').first().waitFor();
+    assert.doesNotMatch(await page.locator('#findings').innerText(), /\b(the|of|where|with)\b/, 'English');
   },
   scanning: async (page, scanner) => {
     await page.goto(`${scanner.url}#`);

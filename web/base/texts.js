@@ -73,43 +73,54 @@ export function text(key, values = {}) {
 
 const value = /"[^"]*"|-?\d+(?:\.\d+)?/g;  // a value in the scanner's sentences: a name in quotes, or a number
 
-/** The translation of a sentence, with {} for each value, or null. @param {string} sentence */
-const saidOf = (sentence) => Object.hasOwn(said, sentence.replace(value, '{}')) ? said[sentence.replace(value, '{}')] : null;
+/** The translation of a sentence as a whole, or null. @param {string} sentence @returns {string | null} */
+function translatedWhole(sentence) {
+  const key = sentence.replace(value, '{}');
+  if (!Object.hasOwn(said, key)) {
+    return null;
+  }
+  const shown = (sentence.match(value) ?? [])
+      .map((one) => /^("|-?0\d)/.test(one) ? one : fixed(Number(one), one.split('.')[1]?.length ?? 0));
+  let next = 0;
+  return said[key].replace(/\{(\d?)\}/g, (_, place) => shown[place ? Number(place) - 1 : next++] ?? '');
+}
+
+/**
+ * The translation of a sentence of which only the parts are known, such as "97 % of it has readings, 640 x 480"; or null.
+ * @param {string} sentence @returns {string | null}
+ */
+function translatedParts(sentence) {
+  const isWordless = !/[a-z]{2}/i.test(sentence);
+  const whole = isWordless ? sentence : translatedWhole(sentence);
+  if (whole !== null) {
+    return whole;
+  }
+  for (const {0: separator, index = 0} of sentence.matchAll(/, |; /g)) {
+    const first = translatedWhole(sentence.slice(0, index));
+    const others = first === null ? null : translatedParts(sentence.slice(index + separator.length));
+    if (others !== null) {
+      return first + separator + others;
+    }
+  }
+  return null;
+}
 
 const speaker = /^(?:sensor|no sensor was found): (?=\w+: )/;  // before the name of the driver that says the rest
-
-/** Translates a sentence of which only the parts are known, such as "97 % of it has readings, 640 x 480". @param {string} sentence @returns {string} */
-function translatedParts(sentence) {
-  const parts = sentence.split(/(, |; )/);
-  const isWordless = (/** @type {string} */ part) => !/[a-z]{2}/i.test(part);
-  const isKnown = (/** @type {string} */ part) => isWordless(part) || saidOf(part) !== null;
-  return parts.length > 1 && parts.every(isKnown) ? parts.map((part) => isWordless(part) ? part : translated(part)).join('') : sentence;
-}
 
 /**
  * Translates a sentence of the scanner. It is looked up with {} in place of its values, which are put into the translation in
  * order, or by number ({2} is the second). An unknown sentence is returned unchanged.
  * @param {string} sentence
  */
-export function translated(sentence) {
-  const words = sentence.replace(speaker, '');
-  const values = words.match(value) ?? [];
-  const known = saidOf(words);
-  if (known === null) {
-    return translatedParts(sentence);
-  }
-  const shown = values.map((one) => /^("|-?0\d)/.test(one) ? one : fixed(Number(one), one.split('.')[1]?.length ?? 0));
-  let next = 0;
-  return known.replace(/\{(\d?)\}/g, (_, place) => shown[place ? Number(place) - 1 : next++] ?? '');
-}
+export const translated = (sentence) => translatedParts(sentence.replace(speaker, '')) ?? sentence;
 
 const unit = /(\d) (?=(?:[cm]?m[²³]?|m?s|min|h|[kMGT]?B|bytes?|°|V)(?![\p{L}\p{N}]))/gu;
 
 const beforePercent = new Intl.NumberFormat(locale, {style: 'percent'}).format(1).slice(3, -1);  // "100 %" or "100%"
 
 /**
- * Keeps a number and its unit on one line, and a dot between two parts on the line of the first. Sets 640 x 480 as 640 × 480, and
- * percentages as the language does. Pure.
+ * Keeps a number and its unit on one line, and a dot between two parts on the line of the first. Sets 640 x 480 as
+ * 640 × 480, and percentages as the language does. Pure.
  * @param {string} words
  */
 export const typeset = (words) => words.replace(/(\d) (?=%)/g, `$1${beforePercent}`).replace(unit, '$1\u00a0')

@@ -1088,7 +1088,7 @@ export const said = {
   'Settings': 'Einstellungen',
   'Disk space': 'Speicherplatz',
   'Memory': 'Arbeitsspeicher',
-  'CPU temperature': 'Prozessortemperatur',
+  'CPU temperature': 'CPU-Temperatur',
   'Safe mode': 'Abgesicherter Betrieb',
   'Supply voltage': 'Versorgungsspannung',
   'CPU speed': 'Prozessortakt',

@@ -73,8 +73,10 @@ export const parted = (page) => page.evaluate(() => {
   return texts.filter((text) => /\d (?:mm|cm|cm³|m|ms|s|min|h|byte|kB|MB|GB|%|V)(?![\p{L}\p{N}])/u.test(text));
 });
 
-/** By how much the page is wider than the screen, pixels. */
-export const overflow = (page) => page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
+/**
+ * By how much the page is wider than the screen, pixels. A phone zooms out of such a page, and innerWidth grows with it.
+ */
+export const overflow = (page) => page.locator('html').evaluate((root) => root.scrollWidth - root.clientWidth);
 
 /** In forced colours every text can be read, and the chosen option can be told from the others. */
 async function lookInForcedColours(page, name) {

@@ -2,6 +2,7 @@ import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
+import {overflow} from './access.js';
 import {openBrowser, openPage, picture} from './browser.js';
 import {ask, startScanner} from './scanner.js';
 
@@ -30,8 +31,8 @@ async function checkBrokenOne(scanner, browser, screen) {
   await line(page, 'Sensor').waitFor();
   assert.match(await line(page, 'Sensor').innerText(), /Fault[^]*power supply/);
   assert.match(await page.locator('#doctor-summary').innerText(), /\d faults? .*found/);
-  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-  assert.ok(overflow <= 0, `${overflow} pixels too wide`);
+  const tooWide = await overflow(page);
+  assert.ok(tooWide <= 0, `${tooWide} pixels too wide`);
   await page.locator('.doctor').scrollIntoViewIfNeeded();
   await picture(page, `check-faults-${screen}`);
   await page.context().close();

@@ -3,6 +3,7 @@ import {readFile, writeFile} from 'node:fs/promises';
 import {join} from 'node:path';
 import {test} from 'node:test';
 
+import {overflow} from './access.js';
 import {goTo, openBrowser, openPage, picture} from './browser.js';
 import {ask, startScanner} from './scanner.js';
 
@@ -123,11 +124,12 @@ async function tellPoseInForce(scanner, browser) {
 /** Nothing is cut off on this screen. */
 async function fits(scanner, browser, screen, colorScheme) {
   const {page, faults} = await openSettings(browser, scanner, {screen, colorScheme});
-  const overflow = await page.evaluate(() => document.documentElement.scrollWidth - innerWidth);
-  assert.ok(overflow <= 0, `${overflow} pixels too wide`);
-  const middles = await page.locator('.secret').evaluateAll((fields) => fields.filter((field) => field.checkVisibility())
-      .map((field) => [...field.children].map((part) => part.getBoundingClientRect()).map(({top, height}) => top + height / 2)));
-  assert.ok(middles.length > 0 && middles.every(([field, button]) => Math.abs(field - button) < 2), `Show stands beside its field: ${middles}`);
+  const tooWide = await overflow(page);
+  assert.ok(tooWide <= 0, `${tooWide} pixels too wide`);
+  const middles = await page.locator('.secret:visible').evaluateAll((fields) => fields.map((field) =>
+    [...field.children].map((part) => part.getBoundingClientRect()).map(({top, height}) => top + height / 2)));
+  assert.ok(middles.length > 0 && middles.every(([field, button]) => Math.abs(field - button) < 2),
+      `Show stands beside its field: ${middles}`);
   await picture(page, `settings-${screen}-${colorScheme}`);
   assert.deepEqual(faults, []);
 }

@@ -4,7 +4,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {complaints, overflow} from './access.js';
-import {openBrowser, openPage, picture} from './browser.js';
+import {awaitPlace, openBrowser, openPage, picture} from './browser.js';
 import {scan, startScanner} from './scanner.js';
 
 const screens = {phone: [390, 844], small: [360, 640], tablet: [820, 1180], desktop: [1280, 860]};
@@ -210,6 +210,23 @@ async function largestLetters(t, url) {
     }
     assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
     await picture(page, `result-largest-${name}`, {fullPage: false});
+  }
+  await page.goto(new URL('/', url).href);
+  await page.locator('#start').waitFor();
+  for (const [name, size] of Object.entries({usual: [360, 740], phone: screens.phone})) {
+    await resize(page, size);
+    assert.equal(await hiddenPart(page, 'start'), '', name);
+    await page.locator('#all-settings').evaluate((details) => { details.open = true; });
+    assert.ok(await overflow(page) <= 0, `${name} is ${await overflow(page)} pixels too wide`);
+    await picture(page, `form-largest-${name}`, {fullPage: false});
+  }
+  await resize(page, [360, 740]);
+  for (const place of ['library', 'scanner', 'calibrate', 'settings']) {
+    await page.goto(new URL(`/#${place}`, url).href);
+    await awaitPlace(page, place);
+    await page.locator(place === 'settings' ? '#cards' : 'main:not([hidden]) h1').waitFor();
+    assert.ok(await overflow(page) <= 0, `${place} is ${await overflow(page)} pixels too wide`);
+    await picture(page, `${place}-largest`);
   }
   await page.context().close();
 }

@@ -282,6 +282,20 @@ TEST(HttpServer, RefusesARequestWhoseLengthIsInDoubtAndReadsNoneAfterIt) {
   }
 }
 
+TEST(HttpServer, RefusesControlCharactersOfATarget) {
+  const HttpServer server(patient, echo);
+  const auto status = [&](const std::string& target) {
+    return request(server.port(), "GET", target).status;
+  };
+  for (const char* const target : {"/status%00", "/status%00.png", "/%00", "/a%0Ab", "/a%0D%0Ab",
+                                   "/a%1f", "/a%7F", "/a?leaf=1%00.png"}) {
+    EXPECT_EQ(status(target), 400) << target;
+  }
+  for (const char* const target : {"/gr%C3%BCn", "/a%2500", "/a%", "/a%0", "/a%20?b=%0A"}) {
+    EXPECT_EQ(status(target), 200) << target;
+  }
+}
+
 /// Lowers this process's limit of open files to a number of free ones, for its lifetime.
 class FewDescriptors {
  public:

@@ -38,6 +38,9 @@ class Exchange {
   ///                              it is no number, or said twice
   void expect_clear_length() const;
 
+  /// @throws Error "bad-request"  if a program in C may take a part of the target for the whole
+  void expect_clear_target(const std::string& path) const;
+
   /// The whole body.
   /// @throws Error "too-large", "too-slow"; "cut-short", "bad-request" if it is not what was
   /// announced
@@ -86,10 +89,11 @@ namespace {
 constexpr std::size_t threads = 32;
 constexpr std::size_t spare_threads = 4;
 
-constexpr std::array<std::pair<const char*, const char*>, 7> fixed_options{{
+constexpr std::array<std::pair<const char*, const char*>, 8> fixed_options{{
     {"max_request_size", "16384"},       // of the head, bytes
     {"enable_keep_alive", "yes"},        // Exchange decides
     {"enable_auth_domain_check", "no"},  // any host in an absolute request target
+    {"decode_url", "no"},                // a decoded U+0000 would end the path
     {"tcp_nodelay", "1"},
     {"enable_directory_listing", "no"},
     {"access_control_allow_origin", ""},
@@ -111,10 +115,12 @@ std::optional<Response> refusal(mg_connection& connection, const Request& reques
     return refuse_key(*service.keys, request, *key);
   }
   const mg_request_info& info = *mg_get_request_info(&connection);
-  const auto text = [](const char* part) { return std::string(part != nullptr ? part : ""); };
+  std::string target = info.request_uri != nullptr ? info.request_uri : "";
+  if (info.query_string != nullptr) {
+    target.append("?").append(info.query_string);
+  }
   return service.login->refusal({.method = request.method,
-                                 .path = text(info.request_uri),  // civetweb has decoded it
-                                 .query = text(info.query_string),
+                                 .target = std::move(target),
                                  .address = info.remote_addr,
                                  .authorization = request.header("Authorization")},
                                 std::chrono::steady_clock::now());
@@ -124,6 +130,7 @@ std::optional<Response> refusal(mg_connection& connection, const Request& reques
 Response answer_to(Request& request, Exchange& exchange, const HttpServer::Answer& answer) {
   try {
     exchange.expect_clear_length();
+    exchange.expect_clear_target(request.path);
     if (is_upload(request)) {
       request.upload = exchange.upload();
     } else {
@@ -449,6 +456,15 @@ Headers to_parameters(const char* query) {
   return parameters;
 }
 
+/// A path without its percent-encoding. It may contain U+0000.
+std::string to_path(std::string_view target) {
+  std::string path(target.size() + 1, '\0');
+  const int length = mg_url_decode(target.data(), static_cast<int>(target.size()), path.data(),
+                                   static_cast<int>(path.size()), 0);
+  path.resize(static_cast<std::size_t>(std::max(length, 0)));
+  return path;
+}
+
 }  // namespace
 
 Exchange::Exchange(mg_connection& connection, ConnectionGuard& guard)
@@ -462,7 +478,7 @@ Request Exchange::head() {
   const mg_request_info& info = *mg_get_request_info(&connection_);
   may_keep_ = asks_to_keep(info);
   Request request{.method = info.request_method,
-                  .path = info.local_uri != nullptr ? info.local_uri : "",
+                  .path = to_path(info.local_uri != nullptr ? info.local_uri : ""),
                   .parameters = to_parameters(info.query_string)};
   if (const auto host = authority(info.request_uri != nullptr ? info.request_uri : "")) {
     request.headers.emplace_back("Host", *host);  // the first of a name is in force
@@ -488,6 +504,16 @@ void Exchange::expect_clear_length() const {
                     "Send one header Content-Length, a number.");
       }
     }
+  }
+}
+
+void Exchange::expect_clear_target(const std::string& path) const {
+  const char* const query = mg_get_request_info(&connection_)->query_string;
+  const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; };
+  if (std::ranges::any_of(path, is_control) ||
+      (query != nullptr && std::string_view(query).find("%00") != std::string_view::npos)) {
+    throw Error(ErrorCode::bad_request, "the address contains a control character",
+                "Ask for a path, such as /api/v1/status.");
   }
 }
 

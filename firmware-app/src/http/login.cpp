@@ -36,18 +36,6 @@ std::int64_t period_of_nonce(const std::string& nonce) {
   return static_cast<std::int64_t>(std::stoull(nonce.substr(0, number_digits), nullptr, 16));
 }
 
-/// Whether a proof is for the target of this request.
-bool is_for(const DigestProof& proof, const LoginAttempt& attempt) {
-  const std::string sent = proof.uri.substr(0, proof.uri.find('?'));
-  const std::string query =
-      sent.size() == proof.uri.size() ? "" : proof.uri.substr(sent.size() + 1);
-  std::string path(sent.size() + 1, '\0');
-  const int length = mg_url_decode(sent.data(), static_cast<int>(sent.size()), path.data(),
-                                   static_cast<int>(path.size()), 0);
-  path.resize(static_cast<std::size_t>(std::max(length, 0)));
-  return path == attempt.path && query == attempt.query;
-}
-
 Response refuse_guess(std::chrono::seconds wait) {
   const std::string seconds = std::to_string(wait.count());
   Response response =
@@ -142,7 +130,7 @@ std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
     }
     return challenge(Freshness::fresh, current);
   }
-  if (!is_for(*proof, attempt)) {
+  if (proof->uri != attempt.target) {
     return challenge(Freshness::fresh, current);
   }
   if (!is_fresh(proof->nonce, current) || !is_first_use(*proof, current)) {

@@ -18,8 +18,7 @@ namespace octurn {
 /// The parts of a request that the login needs.
 struct LoginAttempt {
   std::string method = "GET";
-  std::string path = "/";                              ///< decoded
-  std::string query = {};                              ///< as it was sent
+  std::string target = "/";                            ///< as it was sent, with the query
   std::string address = {};                            ///< of the client
   std::optional<std::string_view> authorization = {};  ///< the header of that name
 };

@@ -39,6 +39,14 @@ class LoginTest : public ::testing::Test {
     return last_ ? last_->status : 200;
   }
 
+  /// Sends wrong passwords from the address of all, until it may send no more.
+  void guess_until_locked(Login::Time now = start) {
+    const std::string one = nonce(now);
+    for (int i = 0; i < 20 && answer(proof_of(std::to_string(i), one), {}, now) != 429; ++i) {
+    }
+    ASSERT_EQ(last()->status, 429);
+  }
+
   const std::optional<Response>& last() const { return last_; }
 
   bool is_told_stale() const { return challenge_of(last_).find("stale=true") != std::string::npos; }
@@ -122,6 +130,39 @@ TEST_F(LoginTest, SlowsGuessesDownAndThoseOfOneAddressAlone) {
   EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 2}), {.address = "10.0.0.2"}), 200);
   EXPECT_EQ(answer("", thief), 401);  // a request without a proof is no guess
   EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 3}), thief, start + 10s), 200);
+}
+
+TEST_F(LoginTest, LocksNoSessionOutByTheGuessesOfOthersBehindItsAddress) {
+  const std::string one = nonce();
+  EXPECT_EQ(answer(proof_of("open sesame", one)), 200);
+  guess_until_locked();
+  for (int i = 2; i < 20; ++i) {  // also wrong ones: whoever overheard the nonce sends them
+    EXPECT_EQ(answer(proof_of("wrong", one, {.uses = i})), 401);
+  }
+  EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 20})), 200);
+  EXPECT_EQ(answer(proof_of("wrong", nonce())), 429) << "the right one frees no guesses of others";
+
+  // An hour later the nonce is stale, and the next one is of the same session.
+  const Login::Time later = start + 1h;
+  guess_until_locked(later);
+  EXPECT_EQ(answer(proof_of("open sesame", one, {.uses = 21}), {}, later), 401);
+  EXPECT_TRUE(is_told_stale());
+  const std::string next = quoted_field(challenge_of(last()), "nonce");
+  EXPECT_EQ(answer(proof_of("open sesame", next), {}, later), 200);
+}
+
+TEST_F(LoginTest, FreesNoSessionFromTheLimitThatHasNotProvedThePassword) {
+  const std::string one = nonce();
+  EXPECT_EQ(answer(proof_of("open sesame", one)), 200);
+  std::string forged = nonce();
+  forged.replace(32, 16, one, 32, 16);  // the other session's number, signed with another one
+  guess_until_locked();
+  EXPECT_EQ(answer(proof_of("open sesame", forged)), 429);
+  EXPECT_EQ(answer(proof_of("open sesame", nonce())), 429);
+
+  write_password_file(file(), "another one");  // who knew the old one guesses as all others do
+  EXPECT_EQ(answer(proof_of("another one", one, {.uses = 2})), 429);
+  EXPECT_EQ(answer(proof_of("another one", one, {.uses = 2}), {}, start + 10s), 200);
 }
 
 TEST_F(LoginTest, LetsNobodyInWithoutAHash) {

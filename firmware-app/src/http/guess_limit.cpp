@@ -60,11 +60,17 @@ void GuessLimit::count_wrong(const std::string& address, Time now) {
   }
 }
 
-void GuessLimit::forgive(const std::string& address, Time now) {
+void GuessLimit::remember(const std::string& session, const std::string& address, Time now) {
   const std::string client = to_client(address);
-  expiry_.erase(client);
   drop_oldest_before(known_, client);
   known_.insert_or_assign(client, now);
+  drop_oldest_before(sessions_, session);
+  sessions_.insert_or_assign(session, now);
+}
+
+void GuessLimit::forget_known() {
+  known_.clear();
+  sessions_.clear();
 }
 
 }  // namespace octurn

@@ -2,7 +2,6 @@
 
 #include <civetweb.h>
 
-#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <system_error>
@@ -16,8 +15,10 @@
 namespace octurn {
 namespace {
 
-// A nonce is its period and its number, 16 hexadecimal digits each, and their signature.
+// A nonce is its period, its number and its session's, 16 hexadecimal digits each, and their
+// signature. A session's number is that of its first nonce.
 constexpr std::size_t number_digits = 16;
+constexpr std::size_t text_digits = 3 * number_digits;
 constexpr std::size_t signature_digits = 32;
 
 // Maximum number of proofs remembered for the nonces of one period. The page sends about one a
@@ -34,6 +35,10 @@ std::int64_t to_period(Login::Time time) { return time.time_since_epoch() / Logi
 
 std::int64_t period_of_nonce(const std::string& nonce) {
   return static_cast<std::int64_t>(std::stoull(nonce.substr(0, number_digits), nullptr, 16));
+}
+
+std::string session_of_nonce(const std::string& nonce) {
+  return nonce.substr(2 * number_digits, number_digits);
 }
 
 Response refuse_guess(std::chrono::seconds wait) {
@@ -69,18 +74,17 @@ std::string Login::sign(const std::string& text) const {
   return signature.data();
 }
 
-std::string Login::make_nonce(std::int64_t now) {
-  const std::string text =
-      to_hexadecimal(static_cast<std::uint64_t>(now)) + to_hexadecimal(++nonces_);
+/// @param session  empty: a new one
+std::string Login::make_nonce(const std::string& session, std::int64_t now) {
+  const std::string number = to_hexadecimal(++nonces_);
+  const std::string text = to_hexadecimal(static_cast<std::uint64_t>(now)) + number +
+                           (session.empty() ? number : session);
   return text + sign(text);
 }
 
-bool Login::is_fresh(const std::string& nonce, std::int64_t now) {
-  if (nonce.size() != 2 * number_digits + signature_digits) {
-    return false;
-  }
-  const std::string text = nonce.substr(0, 2 * number_digits);
-  return text + sign(text) == nonce && now - period_of_nonce(nonce) <= 1;
+bool Login::is_own(const std::string& nonce) const {
+  return nonce.size() == text_digits + signature_digits &&
+         sign(nonce.substr(0, text_digits)) == nonce.substr(text_digits);
 }
 
 /// Marks a correct proof with a fresh nonce as used. @return false if it was used before
@@ -96,15 +100,22 @@ bool Login::is_first_use(const DigestProof& proof, std::int64_t now) {
   return used.insert(proof.response).second;
 }
 
-Response Login::challenge(Freshness proof, std::int64_t now) {
+Response Login::challenge(const std::string& session, Freshness proof, std::int64_t now) {
   Response response = problem({.code = ErrorCode::password_needed,
                                .detail = "the page has a password",
                                .hint = std::string("The user is ") + page_user + "."});
   response.headers.emplace_back(
-      "WWW-Authenticate", std::string("Digest realm=\"") + page_realm +
-                              R"(", qop="auth", algorithm=MD5, nonce=")" + make_nonce(now) + "\"" +
-                              (proof == Freshness::stale ? ", stale=true" : ""));
+      "WWW-Authenticate",
+      std::string("Digest realm=\"") + page_realm + R"(", qop="auth", algorithm=MD5, nonce=")" +
+          make_nonce(session, now) + "\"" + (proof == Freshness::stale ? ", stale=true" : ""));
   return response;
+}
+
+void Login::count_wrong(const std::string& address, Time now) {
+  guesses_.count_wrong(address, now);
+  if (guesses_.to_wait(address, now).count() > 0) {
+    log::warning("http", "too many wrong passwords from " + address);
+  }
 }
 
 std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
@@ -115,28 +126,34 @@ std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
   const std::optional<std::string> hash = read_password_hash(file);
   const std::int64_t current = to_period(now);
   const std::lock_guard lock(mutex_);
+  if (hash != hash_) {
+    hash_ = hash;
+    guesses_.forget_known();
+  }
   const auto proof = parse_digest(attempt.authorization.value_or(""));
   if (!proof) {
-    return challenge(Freshness::fresh, current);
+    return challenge({}, Freshness::fresh, current);
   }
-  if (const auto wait = guesses_.to_wait(attempt.address, now); wait.count() > 0) {
+  const std::string session = is_own(proof->nonce) ? session_of_nonce(proof->nonce) : "";
+  const bool is_known = guesses_.knows(session);
+  if (const auto wait = guesses_.to_wait(attempt.address, now); wait.count() > 0 && !is_known) {
     return refuse_guess(wait);
   }
   if (!hash || proof->user != page_user || proof->realm != page_realm || proof->qop != "auth" ||
       proof->response != digest_response(*proof, *hash, attempt.method)) {
-    guesses_.count_wrong(attempt.address, now);
-    if (guesses_.to_wait(attempt.address, now).count() > 0) {
-      log::warning("http", "too many wrong passwords from " + attempt.address);
+    if (!is_known) {
+      count_wrong(attempt.address, now);
     }
-    return challenge(Freshness::fresh, current);
+    return challenge(session, Freshness::fresh, current);
   }
   if (proof->uri != attempt.target) {
-    return challenge(Freshness::fresh, current);
+    return challenge(session, Freshness::fresh, current);
   }
-  if (!is_fresh(proof->nonce, current) || !is_first_use(*proof, current)) {
-    return challenge(Freshness::stale, current);
+  if (session.empty() || current - period_of_nonce(proof->nonce) > 1 ||
+      !is_first_use(*proof, current)) {
+    return challenge(session, Freshness::stale, current);
   }
-  guesses_.forgive(attempt.address, now);
+  guesses_.remember(session, attempt.address, now);
   return std::nullopt;
 }
 

@@ -25,7 +25,10 @@ struct LoginAttempt {
 
 /// Authenticates clients by the page's password and HTTP Digest (RFC 7616). A proof is valid for
 /// one request with its method and target, once, and for some minutes after its challenge, so that
-/// an overheard proof is useless. Wrong guesses are slowed down.
+/// an overheard proof is useless. Wrong guesses are slowed down, but not those of a session that
+/// has proved the password: a client stays in its session by the nonces that answer its proofs.
+/// Whoever overhears one can test guesses without the server, so limiting these would only let
+/// others lock the session out.
 ///
 /// Thread-safe. The time is a parameter, so that tests need no clock.
 class Login {
@@ -50,17 +53,19 @@ class Login {
   enum class Freshness { fresh, stale };
 
   std::filesystem::path file_in_force() const;
-  bool is_fresh(const std::string& nonce, std::int64_t now);
+  bool is_own(const std::string& nonce) const;
   bool is_first_use(const DigestProof& proof, std::int64_t now);
-  std::string make_nonce(std::int64_t now);
+  std::string make_nonce(const std::string& session, std::int64_t now);
   std::string sign(const std::string& text) const;
-  Response challenge(Freshness proof, std::int64_t now);
+  void count_wrong(const std::string& address, Time now);
+  Response challenge(const std::string& session, Freshness proof, std::int64_t now);
 
   const std::filesystem::path password_file_;
   const std::filesystem::path own_file_;
   std::mutex mutex_ = {};  // guards what follows
   std::string secret_;     // key that signs nonces
   std::uint64_t nonces_ = 0;
+  std::optional<std::string> hash_ = {};  // of the password that was in force last
   std::map<std::int64_t, std::set<std::string>> used_ = {};  // used responses by nonce period
   GuessLimit guesses_ = {};
 };

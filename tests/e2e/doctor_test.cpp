@@ -1,8 +1,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
+#include <csignal>
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
+#include <thread>
 
 #include "support/daemon.hpp"
 #include "support/program.hpp"
@@ -75,6 +79,38 @@ TEST(DoctorCommand, AlignsItsTable) {
     EXPECT_NE(line[column], ' ') << line;
   }
   EXPECT_GT(rows, 10);
+}
+
+/// Waits until a program leaves SIGINT to its own threads, as it does from the begin of `main` on.
+void wait_until_it_takes_signals(const Program& program) {
+  const std::string status = "/proc/" + std::to_string(program.process()) + "/status";
+  const auto blocked = [&] {
+    const std::string text = content_of(status);
+    return std::stoull(text.substr(text.find("SigBlk:") + 7), nullptr, 16);
+  };
+  while ((blocked() >> (SIGINT - 1)) % 2 == 0) {
+    std::this_thread::yield();
+  }
+}
+
+// At its begin, while it reads the sensor, and while it turns the platform.
+TEST(DoctorCommand, EndsWithinThreeSecondsOfCtrlC) {
+  using namespace std::chrono_literals;
+  for (const auto delay : {0ms, 500ms, 1500ms, 8000ms}) {
+    const TemporaryFolder folder;
+    const std::filesystem::path archive = folder.path() / "diagnostics.zip";
+    Program doctor({octurn_program(), "doctor", "--simulate", "--turn", "--zip", archive, "--data",
+                    folder.path() / "data"});
+    wait_until_it_takes_signals(doctor);
+    std::this_thread::sleep_for(delay);
+    const auto begin = std::chrono::steady_clock::now();
+    doctor.send_signal(SIGINT);
+    EXPECT_EQ(doctor.wait(), 1) << delay.count() << " ms";
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, 3s) << delay.count() << " ms";
+    EXPECT_NE(doctor.errors().find("stopped before the end"), std::string::npos) << doctor.errors();
+    EXPECT_EQ(doctor.output(), "");
+    EXPECT_FALSE(std::filesystem::exists(archive));
+  }
 }
 
 TEST(DoctorCommand, LeavesTheDaemonsLinesAndSensorAlone) {

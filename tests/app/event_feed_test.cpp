@@ -74,6 +74,7 @@ TEST(EventFeed, FindsByItsHeartbeatWhoHasGone) {
 }
 
 TEST(EventFeed, EndsAStreamAfterItsLifetime) {
+  EXPECT_EQ(FeedLimits{}.lifetime, 10min);  // a revoked key has it no longer
   FeedLimits limits = brisk;
   limits.lifetime = 0ms;
   EventFeed feed([] { return std::vector<News>{}; }, limits);

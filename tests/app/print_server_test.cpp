@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <chrono>
 
 #include "outgoing/printer_uploads.hpp"
 
@@ -17,6 +18,8 @@ TEST(PrintServer, IsSentAModelAsItsInterfaceSays) {
   EXPECT_EQ(form.method + " " + form.url, "POST http://a/octo/api/files/local");
   EXPECT_EQ(form.form_name, "Owl.stl");
   EXPECT_TRUE(has_header(form, "X-Api-Key: k"));
+  EXPECT_EQ(form.time_limit, std::chrono::hours(1));
+  EXPECT_EQ(form.still_limit, std::chrono::seconds(30));
 
   const Printer moonraker{.kind = PrinterKind::moonraker, .url = "http://b"};
   const OutgoingRequest keyless = upload_request(moonraker, "/data/Scan.stl", "Owl.stl", "");

@@ -4,6 +4,7 @@
 
 #include <atomic>
 #include <chrono>
+#include <cstdlib>
 #include <future>
 #include <thread>
 
@@ -58,6 +59,48 @@ class Receiver {
   HttpServer server_{{.address = "127.0.0.1", .port = 0},
                      [this](const Request& request) { return take(request); }};
 };
+
+TEST(OutgoingRequest, GoesToItsAddressAndToNoProxy) {
+  const Receiver proxy({200});
+  const Receiver receiver({200});
+  ::unsetenv("no_proxy");
+  for (const char* const name : {"http_proxy", "all_proxy", "ALL_PROXY"}) {
+    ::setenv(name, proxy.url().c_str(), 1);
+  }
+  EXPECT_EQ(ask({.url = receiver.url()}, {}).status, 200);
+  for (const char* const name : {"http_proxy", "all_proxy", "ALL_PROXY"}) {
+    ::unsetenv(name);
+  }
+  EXPECT_EQ(receiver.received().size(), 1U);
+  EXPECT_TRUE(proxy.received().empty());
+}
+
+TEST(OutgoingRequest, KeepsTheFirst64KiBOfAnAnswer) {
+  const HttpServer server({.address = "127.0.0.1", .port = 0},
+                          [](const Request&) { return Response{.body = std::string(1e6, 'a')}; });
+  const OutgoingAnswer answer =
+      ask({.url = "http://127.0.0.1:" + std::to_string(server.port())}, {});
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.body.size(), 65536U);
+}
+
+TEST(OutgoingRequest, EndsAfterItsTimeAndWhereNothingMoves) {
+  EXPECT_EQ(OutgoingRequest{}.time_limit, 10s);
+  EXPECT_EQ(OutgoingRequest{}.still_limit, 30s);
+  EXPECT_EQ(WebhookLimits{}.patience, 10s);
+  std::promise<void> released;
+  const std::shared_future<void> release = released.get_future().share();
+  const HttpServer silent({.address = "127.0.0.1", .port = 0}, [&](const Request&) {
+    release.wait();
+    return Response{.status = 200};
+  });
+  const std::string url = "http://127.0.0.1:" + std::to_string(silent.port());
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_NE(ask({.url = url, .time_limit = 500ms}, {}).trouble, "");
+  EXPECT_NE(ask({.url = url, .time_limit = 1h, .still_limit = 1s}, {}).trouble, "");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, patience);
+  released.set_value();
+}
 
 TEST(WebhookSender, LetsNoWebhookWaitForASilentOne) {
   std::promise<void> released;

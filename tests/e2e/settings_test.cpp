@@ -146,6 +146,29 @@ TEST(Settings, ComeBackFromABackup) {
   EXPECT_EQ(parsed(daemon.get(settings_path))["stored"], json({{"scan", {{"frames", 7}}}}));
 }
 
+TEST(Settings, OfABackupContainNoKeyAndNoPassword) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const std::string key =
+      parsed(daemon.post("/api/v1/keys", R"({"name": "Script", "access": "full"})"))["key"];
+  daemon.post("/api/v1/webhooks", R"({"url": "http://127.0.0.1:9/hook?secret=canary"})");
+  daemon.post("/api/v1/printers", R"({"name": "Prusa", "kind": "octoprint",
+                                      "url": "http://127.0.0.1:9", "key": "canary"})");
+  ASSERT_EQ(
+      request(daemon.port(), "PUT", settings_path + "/password", R"({"password": "canary bird"})")
+          .status,
+      200);
+  const Reply backup = daemon.get(settings_path + "/backup", {{"Authorization", "Bearer " + key}});
+  ASSERT_EQ(backup.status, 200) << backup.body;
+  const std::string hash = digest_hash("octurn", "Octurn", "canary bird");
+  for (const std::string& secret : {std::string("canary"), hash, key.substr(key.rfind('-') + 1)}) {
+    EXPECT_EQ(backup.body.find(secret), std::string::npos) << secret;
+  }
+  const std::string addresses = content_of(folder.path() / "data" / "addresses.json");
+  EXPECT_NE(addresses.find("secret=canary"), std::string::npos) << addresses;
+  EXPECT_NE(addresses.find("octoprint"), std::string::npos) << addresses;
+}
+
 TEST(Settings, ThatAreDamagedAreToldAndTheLastGoodAreUsed) {
   const TemporaryFolder folder;
   std::optional<Daemon> daemon(std::in_place, folder.path());

@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::size_t max_answer = std::size_t{64} << 10U;  // bytes
 constexpr long connect_seconds = 5;
-constexpr long still_seconds = 30;
 constexpr int poll_ms = 1000;
 
 /// Deleter of a C library's object.
@@ -99,7 +98,7 @@ class Transfer {
     set(CURLOPT_CONNECTTIMEOUT, connect_seconds);
     set(CURLOPT_TIMEOUT_MS, static_cast<long>(request.time_limit.count()));
     set(CURLOPT_LOW_SPEED_LIMIT, 1L);
-    set(CURLOPT_LOW_SPEED_TIME, still_seconds);
+    set(CURLOPT_LOW_SPEED_TIME, static_cast<long>(request.still_limit.count()));
   }
 
   void set_credentials(const OutgoingRequest& request) {

@@ -26,6 +26,7 @@ struct OutgoingRequest {
   std::string user = {};                                         ///< for HTTP Digest; empty: none
   std::string password = {};
   std::chrono::milliseconds time_limit = std::chrono::seconds(10);  ///< for the whole exchange
+  std::chrono::seconds still_limit{30};                             ///< in which no byte moves
 };
 
 /// The answer to a request, or the reason why there is none.
@@ -35,8 +36,7 @@ struct OutgoingAnswer {
   std::string trouble = {};  ///< readable reason why there was no answer
 };
 
-/// Sends a request and waits for the answer. Gives up if connecting takes 5 s, or if no byte moves
-/// for 30 s.
+/// Sends a request and waits for the answer. Gives up if connecting takes 5 s.
 /// @param stop     aborts the request at once
 /// @param on_sent  called repeatedly with the number of bytes sent of the body or the form
 OutgoingAnswer ask(const OutgoingRequest& request, const std::stop_token& stop,

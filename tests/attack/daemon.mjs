@@ -110,10 +110,10 @@ export class Daemon {
    * Sends a request with the headers that the page would send.
    * @returns {Promise<{status: number, headers: Object, body: Buffer, json: any}>}
    */
-  ask(method, path, body = undefined, localAddress = '127.0.0.1') {
+  ask(method, path, body = undefined, {localAddress = '127.0.0.1', timeout = patience} = {}) {
     return new Promise((resolve, reject) => {
       const headers = method === 'GET' ? {} : {'Content-Type': 'application/json'};
-      const options = {host: '127.0.0.1', port: this.port, method, path, headers, localAddress, agent: false, timeout: patience};
+      const options = {host: '127.0.0.1', port: this.port, method, path, headers, localAddress, agent: false, timeout};
       const sent = httpRequest(options, (response) => {
         const parts = [];
         response.on('data', (part) => parts.push(part)).on('error', reject).on('end', () => {

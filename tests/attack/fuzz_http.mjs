@@ -100,7 +100,7 @@ try {
     const end = Math.min(total, sent + batch);
     await Promise.all(Array.from({length: together}, () => sendSome({ids, port: daemon.port}, end)));
     require(daemon.isAlive, 'the daemon has ended');
-    const status = await daemon.ask('GET', '/api/v1/status', undefined, '127.0.0.2');
+    const status = await daemon.ask('GET', '/api/v1/status', undefined, {localAddress: '127.0.0.2'});
     require(status.status === 200 && status.json.version, `status says ${status.status}`);
     for (const id of ids.slice(40)) {
       await daemon.ask('DELETE', `/api/v1/scans/${id}`);

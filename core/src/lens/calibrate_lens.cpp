@@ -7,6 +7,7 @@
 #include "io/radial_distortion.hpp"
 #include "lens/grey_image.hpp"
 #include "lens/lens_solver.hpp"
+#include "octurn/intrinsics_json.hpp"
 #include "octurn/lens.hpp"
 #include "octurn/units.hpp"
 
@@ -83,6 +84,9 @@ std::string find_fault(const LensReport& report, double max_rms) {
   if (!(focal_sigma < max_focal_sigma)) {
     return "the pictures determine the focal length to " + number(100 * focal_sigma, 1) +
            " % only: tilt the board more";
+  }
+  if (!(std::max(std::abs(report.lens.k1), std::abs(report.lens.k2)) <= max_distortion)) {
+    return "the distortion that was found is impossible: no lens bends a picture that much";
   }
   return is_one_to_one(report.lens)
              ? ""

@@ -164,5 +164,20 @@ TEST(CalibrateLens, RefusesABoardThatIsNotFlat) {
   expect_refused(calibrate_lens(views_of(scene, holds(), 0.9), 640, 480), "not flat");
 }
 
+// A file would be refused that has such a lens, and every later start with it.
+TEST(CalibrateLens, RefusesADistortionThatNoLensHas) {
+  constexpr double longer = 20;
+  BoardScene scene{.lens = test_lens()};
+  scene.lens.intrinsics.fx *= longer;
+  scene.lens.intrinsics.fy *= longer;
+  scene.lens.k1 = 150;
+  scene.lens.k2 = 0;
+  std::vector<Hold> held = holds();
+  for (Hold& hold : held) {
+    hold.middle.z() *= longer;
+  }
+  expect_refused(calibrate_lens(views_of(scene, held, 0), 640, 480), "bends a picture that much");
+}
+
 }  // namespace
 }  // namespace octurn

@@ -23,6 +23,7 @@ constexpr int depth_reach = 4;          // pixels about a corner
 constexpr int min_block_readings = 40;  // of the 81 there
 constexpr std::size_t min_depth_views = 5;
 constexpr double max_scale_error = 0.1;
+constexpr double board_sigma = 0.002;  // of a printed board's squares, which a ruler measured
 constexpr double offset_sigma = 0.01;  // 1/m, of the prior
 constexpr double shift_sigma = 1;      // pixels, of the prior
 constexpr int depth_steps = 4;
@@ -148,7 +149,7 @@ SolvedOptics to_optics(const LensReport& lens, const DepthFit& fit) {
                     .cy = std::hypot(sigma.cy, fit.sigma[3]),
                     .k1 = lens.sigma.k1,
                     .k2 = lens.sigma.k2,
-                    .depth_scale = std::hypot(fit.sigma[0], focal),
+                    .depth_scale = std::hypot(fit.sigma[0], focal, board_sigma),
                     .depth_offset_per_m = fit.sigma[1]}};
 }
 

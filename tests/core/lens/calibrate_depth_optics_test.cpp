@@ -156,7 +156,14 @@ TEST(CalibrateDepthOptics, FindsLensScaleAndOffset) {
   const DepthOpticsReport report = calibrated(sensor);
   expect_optics(report, sensor.optics, 0.002, 1.5);
   EXPECT_LT(report.optics.sigma.depth_scale, 0.003);
-  EXPECT_GT(report.optics.sigma.depth_scale, 0.001);
+  EXPECT_GT(report.optics.sigma.depth_scale, 0.002);
+}
+
+TEST(CalibrateDepthOptics, IsNoMoreCertainOfTheScaleThanAPrintedBoardIs) {
+  const DepthOpticsReport report = calibrated({.corner_noise = 0.01});
+  ASSERT_TRUE(report.lens.accepted) << report.lens.reason;
+  EXPECT_GE(report.optics.sigma.depth_scale, 0.002);
+  EXPECT_LT(report.optics.sigma.depth_scale, 0.0022);
 }
 
 // A driver may crop other rows of the infrared picture than are known from the literature.

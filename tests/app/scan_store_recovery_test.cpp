@@ -96,6 +96,19 @@ TEST(ScanStore, ListsAScanWhoseRecordLacksAKeyAsFailed) {
   }
 }
 
+// Earlier versions did not write "has_views"; only scans by laser line are in colour.
+TEST(ScanStore, OffersViewsOfEarlierScansThatHaveThem) {
+  const TemporaryFolder folder;
+  const Job job = ScanStore(folder.path()).create({});
+  nlohmann::json record = to_job_json(job);
+  record.erase("has_views");
+  for (const bool is_by_laser : {false, true}) {
+    record["has_colours"] = is_by_laser;
+    put(folder.path() / "scans" / job.id / "job.json", record.dump());
+    EXPECT_EQ(ScanStore(folder.path()).get(job.id).builds.have_views, !is_by_laser);
+  }
+}
+
 TEST(ScanStore, TakesThePlatformToBeAtItsBeginningIfItCannotBeTold) {
   const TemporaryFolder folder;
   for (const char* const text : {"", "{", "[]", "{}", R"({"angle_deg": "far"})"}) {

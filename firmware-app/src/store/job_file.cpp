@@ -44,7 +44,7 @@ std::optional<PoseOf> pose_of_from(const std::optional<JsonValue>& object) {
 /// The time that a scan has taken, within the range of the scanner's clock.
 double in_clock_range(double seconds) { return std::clamp(seconds, 0.0, max_seconds); }
 
-/// False without the key, which earlier versions did not write.
+/// `otherwise` without the key, which earlier versions did not write.
 bool flag_in(const std::optional<JsonValue>& flag, bool otherwise) {
   return flag ? flag->flag() : otherwise;
 }
@@ -102,6 +102,7 @@ Job read_job(const std::filesystem::path& folder) {
 Job to_job(const json& object) {
   JsonObject keys(object, ErrorCode::job_malformed, "");
   constexpr int max_int = std::numeric_limits<int>::max();
+  const bool have_colours = flag_in(keys.value("has_colours"), false);
   return {.id = keys.at("id").text(),
           .label = {.name = keys.at("name").text()},
           .state = parse_name(keys.at("state"), job_state_named),
@@ -117,8 +118,8 @@ Job to_job(const json& object) {
           .calibration = calibration_from(keys.value("calibration")),
           .model = model_from(keys.value("model")),
           .builds = {.chosen = static_cast<int>(number_or_zero(keys, "build", max_int)),
-                     .have_colours = flag_in(keys.value("has_colours"), false),
-                     .have_views = flag_in(keys.value("has_views"), true)},
+                     .have_colours = have_colours,
+                     .have_views = flag_in(keys.value("has_views"), !have_colours)},
           .pose_of = pose_of_from(keys.value("pose_of"))};
 }
 

@@ -14,6 +14,7 @@
 #include "kinect/emulated/camera.hpp"
 #include "kinect/plain_frames.hpp"
 #include "rig/kinect_device.hpp"
+#include "sensor/depth_sensor.hpp"
 #include "support/patience.hpp"
 
 namespace octurn {
@@ -273,6 +274,26 @@ TEST_F(KinectInfrared, RefusesToRunBesideDepth) {
     EXPECT_EQ(waits.start(), openni::STATUS_OK);
     EXPECT_TRUE(waits.next());
   }
+}
+
+// Of a picture that becomes brighter downwards, by a grey level every three rows.
+TEST(InfraredPictures, AreFilledWherePacketsWereLost) {
+  const auto level = [](std::size_t pixel) { return 20 + static_cast<int>(pixel / columns / 3); };
+  Readings picture(EmulatedCamera::infrared_pixels);
+  for (std::size_t i = 0; i < picture.size(); ++i) {
+    picture[i] = static_cast<std::uint16_t>(4 * level(i));
+  }
+  KinectOnDesk desk({frame_of(700)}, {picture});
+  desk->random_loss = 0.05;
+  const auto sensor = open_sensor("kinect://");
+  for (int count = 0; count < 10; ++count) {
+    const std::optional<Picture> seen = sensor->read_infrared({});
+    ASSERT_TRUE(seen);
+    for (std::size_t i = 0; i < seen->samples.size(); ++i) {
+      ASSERT_NEAR(seen->samples[i], level(i), 3) << "pixel " << i;
+    }
+  }
+  EXPECT_GT(sensor->packet_counts()->partial_frames, 5);
 }
 
 }  // namespace

@@ -84,6 +84,31 @@ std::vector<std::size_t> take_lost(DepthFrame& frame) {
   return lost;
 }
 
+/// Fills the pixels of lost packets with those above and below: black stripes of two rows and more
+/// would move the corners of a board. A picture has pixels, since not all packets are lost.
+void fill_lost(Picture& picture) {
+  const auto sample = [&](int u, int v) -> std::uint8_t& {
+    return picture.samples[static_cast<std::size_t>(v) * static_cast<std::size_t>(picture.width) +
+                           static_cast<std::size_t>(u)];
+  };
+  for (int u = 0; u < picture.width; ++u) {
+    int above = -1;  // the last row with a sample
+    for (int v = 0; v <= picture.height; ++v) {
+      const bool is_end = v == picture.height;
+      if (!is_end && sample(u, v) == lost_infrared) {
+        continue;
+      }
+      for (int row = above + 1; row < v && !(is_end && above < 0); ++row) {
+        const int upper = above < 0 ? sample(u, v) : sample(u, above);
+        const int lower = is_end ? upper : sample(u, v);
+        sample(u, row) =
+            static_cast<std::uint8_t>(upper + (lower - upper) * (row - above) / (v - above));
+      }
+      above = v;
+    }
+  }
+}
+
 class OpenNiSensor final : public DepthSensor, public PacketLogger {
  public:
   explicit OpenNiSensor(const std::string& uri) {
@@ -248,7 +273,11 @@ std::optional<Picture> OpenNiSensor::read_infrared(const std::stop_token& stop) 
   if (!wait_for(infrared_, stop)) {
     return std::nullopt;
   }
-  return to_picture(read_frame(infrared_));
+  Picture picture = to_picture(read_frame(infrared_));
+  if (counts_packets_) {
+    fill_lost(picture);
+  }
+  return picture;
 }
 
 std::optional<Tilt> OpenNiSensor::tilt() const { return property_of<Tilt>(device_, tilt_property); }

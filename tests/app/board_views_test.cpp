@@ -67,8 +67,10 @@ TEST(BoardViews, AreDroppedWhenTheBoardMovesMeanwhile) {
     using WrappedSensor::WrappedSensor;
     std::optional<TimedFrame> read(const std::stop_token& stop) override {
       WrappedSensor::show_board(20);
+      ++reads;
       return WrappedSensor::read(stop);
     }
+    int reads = 0;
   };
   Restless sensor(open_unit(1));
   std::stop_source stop;
@@ -83,6 +85,7 @@ TEST(BoardViews, AreDroppedWhenTheBoardMovesMeanwhile) {
       });
   EXPECT_TRUE(views.empty());
   EXPECT_EQ(most, 0);
+  EXPECT_GT(sensor.reads, 0) << "no view was begun";
 }
 
 TEST(BoardViews, NeedAnInfraredCamera) {

@@ -266,5 +266,52 @@ TEST(CalibrationStore, TakesAPoseOfAPersonForOneThatHoldsWithAnyOptics) {
   EXPECT_EQ(x_in_force(store), 0.5);
 }
 
+// The board's optics of a sensor whose depths a known length had corrected: one more reported depth
+// of the platform's middle, the same pixel.
+TEST(CalibrationStore, MovesThePlatformAsTheDepthsOfNewOptics) {
+  const TemporaryFolder folder;
+  CalibrationStore store(folder.path());
+  PoseRecord record = record_at(0);
+  record.platform_from_sensor = nominal_platform_from_sensor();
+  record.scale = 1.03;
+  store.set(record);
+  const SensorOptics before{.depth_scale = 0.99, .depth_offset_per_m = 0.002};
+  const OpticsRecord now{.optics = {.value = {.depth_scale = 1.012, .depth_offset_per_m = -0.008}},
+                         .at = "2026-11-28T08:00:00Z"};
+  keep_optics(folder.path(), "A", now);
+  store.use_scale_of("A", before, now, {});
+
+  const PoseRecord moved = store.records({}).front();
+  const Eigen::Vector3d old_middle = record.platform_from_sensor.inverse().translation();
+  const Eigen::Vector3d middle = moved.platform_from_sensor.inverse().translation();
+  const double reported = 1.03 * 0.99 / old_middle.z() - 0.002;  // 1/m
+  EXPECT_NEAR(middle.z(), 1.012 / (reported - 0.008), 1e-12);
+  EXPECT_TRUE((middle / middle.z()).isApprox(old_middle / old_middle.z(), 1e-12));
+  EXPECT_EQ(moved.scale, 1);
+  EXPECT_EQ(moved.origin, PoseOrigin::page);
+  EXPECT_EQ(moved.at, now.at);
+  EXPECT_FALSE(moved.figures);
+  store.drop_without_optics("A");
+  EXPECT_EQ(store.records({}).front().at, now.at);
+  undo_optics(folder.path(), "A");
+  store.drop_without_optics("A");
+  EXPECT_EQ(store.records({}).front().scale, 1.03) << "the pose before";
+}
+
+TEST(CalibrationStore, PutsABoardsScaleInPlaceOfTheSettingsLength) {
+  const TemporaryFolder folder;
+  CalibrationStore store(folder.path());
+  const OpticsRecord now{.optics = {.value = {.depth_scale = 1.012}}, .at = "2026-11-28T08:00:00Z"};
+  store.use_scale_of("A", {}, now, {});
+  EXPECT_TRUE(store.records({}).front().at.empty()) << "the drawing has no scale to replace";
+
+  ScanSettings configured;
+  configured.depth_scale = 1.02;
+  store.use_scale_of("A", {}, now, configured);
+  EXPECT_EQ(store.in_force(configured).depth_scale, 1);
+  EXPECT_EQ(store.in_force(configured).platform_from_sensor.matrix(),
+            nominal_platform_from_sensor().matrix());
+}
+
 }  // namespace
 }  // namespace octurn

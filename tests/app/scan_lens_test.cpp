@@ -93,9 +93,11 @@ TEST_F(ScanLens, IsFoundFromABoardKeptAndUsedByTheNextScan) {
   EXPECT_NEAR(run.lens->lens.k1, -0.05, 0.003);
   EXPECT_EQ(rig_.log().find_first_of("AB"), std::string::npos) << "no laser is on";
 
-  const Scan before = stored(scanned(scanner, few_stops()));
+  ASSERT_TRUE(scanner.start(few_stops()));
+  EXPECT_EQ(error_thrown_by([&] { scanner.keep_lens({}); }).code(), ErrorCode::busy);
+  const Scan before = stored(*scanner.wait_until_done(patience).job);
   EXPECT_EQ(before.intrinsics.fx, settings_.lens.fx) << "nobody has kept it yet";
-  scanner.keep_lens();
+  scanner.keep_lens({});
   EXPECT_FALSE(*scanner.calibration_run());
   EXPECT_TRUE(scanner.known_sensor()->lens);
   const Scan after = stored(scanned(scanner, few_stops()));
@@ -134,7 +136,7 @@ TEST_F(ScanLens, IsSolvedEarlyWhereSomebodySaysThatItIsEnough) {
   const CalibrationRun run = ended(scanner);
   EXPECT_EQ(run.state, CalibrationRun::State::refused);
   EXPECT_NE(run.lens->reason.find("at least 5"), std::string::npos) << run.lens->reason;
-  EXPECT_EQ(error_thrown_by([&] { scanner.keep_lens(); }).code(), ErrorCode::not_found);
+  EXPECT_EQ(error_thrown_by([&] { scanner.keep_lens({}); }).code(), ErrorCode::not_found);
 }
 
 TEST_F(ScanLens, IsNotLookedForAnyMoreAfterACancel) {
@@ -161,7 +163,10 @@ TEST_F(ScanLens, OfADepthSensorIsKeptWithTheScaleOfItsDepths) {
   ASSERT_TRUE(scanner.look_at_board(square));
   const CalibrationRun run = ended(scanner);
   ASSERT_EQ(run.state, CalibrationRun::State::done) << (run.failure ? run.failure->detail : "");
-  scanner.keep_lens();
+  ScanSettings configured;
+  configured.depth_scale = 1.02;  // a known length, before
+  scanner.keep_lens(configured);
+  EXPECT_EQ(scanner.calibration().in_force(configured).depth_scale, 1);
   const auto kept = optics_record(store_.data(), scanner.sensor_serial());
   ASSERT_TRUE(kept);
   EXPECT_EQ(kept->origin, OpticsOrigin::board);

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "calibration/optics_files.hpp"
 #include "calibration/record_file.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
@@ -63,6 +63,15 @@ bool is_told(const PoseRecord& record) {
 /// Whether a record applies to that camera. An empty serial number, on either side, matches all.
 bool is_of(const PoseRecord& record, std::string_view camera) {
   return camera.empty() || record.camera.empty() || record.camera == camera;
+}
+
+/// The factor of the platform's distance when other optics correct the sensor's depths. A reported
+/// inverse depth r is (r + offset) / scale in truth, see `SensorOptics`.
+double distance_factor(const PoseRecord& pose, const SensorOptics& before,
+                       const SensorOptics& now) {
+  const double depth = std::abs(pose.platform_from_sensor.inverse().translation().z());  // metres
+  const double moved = now.depth_offset_per_m - before.depth_offset_per_m;               // 1/m
+  return now.depth_scale / (pose.scale * before.depth_scale + moved * depth);
 }
 
 /// Drops each camera's oldest records beyond `max_history`. @param records  newest first
@@ -148,6 +157,26 @@ void CalibrationStore::change(const PoseChange& change, const ScanSettings& conf
     record.optics_at.clear();
   }
   add(record);
+}
+
+void CalibrationStore::use_scale_of(std::string_view serial, const SensorOptics& before,
+                                    const OpticsRecord& now, const ScanSettings& configured) {
+  const std::lock_guard writing(writing_);
+  PoseRecord pose = records(configured).front();
+  const bool is_drawing = pose.origin == PoseOrigin::drawing;
+  if (is_drawing && pose.scale == 1) {
+    return;
+  }
+  if (!is_drawing) {
+    pose.platform_from_sensor.translation() *= distance_factor(pose, before, now.optics.value);
+  }
+  pose.origin = PoseOrigin::page;
+  pose.at = now.at;
+  pose.figures.reset();
+  pose.scale = 1;
+  pose.optics_of = serial;
+  pose.optics_at = now.at;
+  add(pose);
 }
 
 void CalibrationStore::undo(std::string_view camera) {

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "calibration/optics_files.hpp"
 #include "calibration/pose_record.hpp"
 #include "settings/laser_settings.hpp"
 #include "settings/scan_settings.hpp"
@@ -51,6 +52,14 @@ class CalibrationStore {
   /// Applies a user's change. @param configured, camera  as above
   void change(const PoseChange& change, const ScanSettings& configured,
               std::string_view camera = {});
+
+  /// Has the scale of a depth sensor's new optics replace that of a known length. The distance of
+  /// the platform changes as its depths do, so that it stays at the same pixels. A pose of the
+  /// drawing stays as drawn.
+  /// @param before  the optics in force until now; default: those that the sensor reports
+  /// @throws  as `set`
+  void use_scale_of(std::string_view serial, const SensorOptics& before, const OpticsRecord& now,
+                    const ScanSettings& configured);
 
   /// Restores the pose before the one in force. @param camera  as above
   /// @throws Error "not-found"  if there is none; and as `set`

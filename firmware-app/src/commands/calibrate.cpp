@@ -321,7 +321,7 @@ CalibrationRun run_of_rig(const CalibrateBoardArguments& arguments) {
     throw_stopped("nothing was solved");
   }
   if (run.lens->accepted) {
-    scanner.keep_lens();
+    scanner.keep_lens(config.scan);
   }
   return run;
 }

@@ -622,23 +622,14 @@ void Scanner::expect_solved_lens() const {
   }
 }
 
-/// Puts a depth sensor's optics into force. Their scale replaces that of a known length: the pose's
-/// distances are scaled along, so that the platform stays at the same pixels. As in
-/// `Worker::keep_pose`, the pose is written first.
-void Scanner::keep_board_optics(const std::string& serial, const SolvedOptics& optics) {
+/// Puts a depth sensor's optics into force. As in `Worker::keep_pose`, the pose is written first.
+void Scanner::keep_board_optics(const std::string& serial, const SolvedOptics& optics,
+                                const ScanSettings& configured) {
   const OpticsRecord record{.optics = optics,
                             .origin = OpticsOrigin::board,
                             .at = utc_text(std::chrono::system_clock::now(), rfc3339)};
-  const auto kept = optics_record(store_.data(), serial);
-  PoseRecord pose = calibration_.records({}).front();
-  if (pose.origin != PoseOrigin::drawing) {
-    const double before = pose.scale * (kept ? kept->optics.value.depth_scale : 1);
-    pose.platform_from_sensor.translation() *= optics.value.depth_scale / before;
-    pose.scale = 1;
-    pose.optics_of = serial;
-    pose.optics_at = record.at;
-    calibration_.set(pose);
-  }
+  const SensorOptics before = optics_in_force(store_.data(), serial).value_or(SensorOptics{});
+  calibration_.use_scale_of(serial, before, record, configured);
   keep_optics(store_.data(), serial, record);
   remake_sensor_map(store_.data(), serial);
   if (sensor_serial() == serial) {
@@ -646,12 +637,16 @@ void Scanner::keep_board_optics(const std::string& serial, const SolvedOptics& o
   }
 }
 
-void Scanner::keep_lens() {
+void Scanner::keep_lens(const ScanSettings& configured) {
   const std::lock_guard lock(scans_);
   expect_solved_lens();
+  if (slot_.has_scan()) {
+    throw Error(ErrorCode::busy, "a scan runs with the lens that was in use when it began",
+                "Keep the new one when the scan has ended.");
+  }
   const std::string& camera = solved_lens_->camera;
   if (solved_lens_->optics) {
-    keep_board_optics(camera, *solved_lens_->optics);
+    keep_board_optics(camera, *solved_lens_->optics, configured);
   } else {
     octurn::keep_lens(store_.data(), camera, solved_lens_->report);
     if (sensor_serial() == camera) {
@@ -675,7 +670,8 @@ void Scanner::forget_lens() {
   std::error_code unreadable;
   if (serial.empty() || !std::filesystem::exists(lens_path(store_.data(), serial), unreadable)) {
     throw Error(ErrorCode::not_found, "no measured lens of this camera is kept",
-                "The lens of the settings is in use.");
+                "A camera with lasers has the lens of the settings then. A Kinect has optics: null "
+                "as \"optics\" takes the last ones back.");
   }
   remove_lens(store_.data(), serial);
   board_.set_lens(std::nullopt);

@@ -183,8 +183,9 @@ class Scanner {
   bool solve_lens();
 
   /// Stores the lens that was solved last, or drops it. Both clear `calibration_run`.
-  /// @throws Error "not-found"  if no lens was solved
-  void keep_lens();
+  /// @param configured  the settings whose pose and depth scale are in force if no other is
+  /// @throws Error "not-found"  if no lens was solved; "busy"  if it is kept while a scan runs
+  void keep_lens(const ScanSettings& configured);
   void discard_lens();
 
   /// Removes the stored lens of the camera that was opened last: the settings' lens is used again.
@@ -284,7 +285,8 @@ class Scanner {
   void expect_resumable(const Job& job) const;
   void expect_last_pose(const Job& pose) const;
   void expect_solved_lens() const;
-  void keep_board_optics(const std::string& serial, const SolvedOptics& optics);
+  void keep_board_optics(const std::string& serial, const SolvedOptics& optics,
+                         const ScanSettings& configured);
   void remove_pose(const Job& pose);
   std::optional<BuildRun> offer_build(BuildCommand command);
   std::optional<Job> hand_over(Job job, Command command);

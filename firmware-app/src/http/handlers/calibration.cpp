@@ -134,7 +134,7 @@ LensChange to_lens_change(JsonObject& keys) {
 void carry_out(App& app, LensChange change) {
   switch (change) {
     case LensChange::keep:
-      return app.scanner.keep_lens();
+      return app.scanner.keep_lens(app.settings.config().scan);
     case LensChange::discard:
       return app.scanner.discard_lens();
     case LensChange::remove:
@@ -265,7 +265,7 @@ Response send_points(App& app) {
   }
   const auto sensor = app.scanner.known_sensor();
   const std::vector<OpticsRecord>& known = sensor->optics;
-  const double scale = app.scanner.calibration().in_force({}).depth_scale;
+  const double scale = app.scanner.calibration().in_force(app.settings.config().scan).depth_scale;
   Intrinsics lens = scaled(camera->lens, scale);
   DepthFrame frame = camera->frame;
   if (!known.empty() && frame.width > 0) {  // none while a Kinect looks at a board

@@ -76,6 +76,9 @@ TEST_F(CalibrateBoardCommand, SaysWhyALensIsNotKnown) {
   const json refused = json::parse(run(1, {"calibrate", "--board", some.string(), "--json"}));
   EXPECT_FALSE(refused["accepted"]);
   EXPECT_EQ(refused["reason"], "a board was seen in 4 pictures: at least 5 have to show it");
+  EXPECT_NE(run(2, {"calibrate", "--board", some.string(), "--square-mm", "14.9"})
+                .find("does not depend on the squares' side"),
+            std::string::npos);
   put(some / "120.png", "no picture");
   EXPECT_NE(run(1, {"calibrate", "--board", some.string()}).find("120.png"), std::string::npos);
   EXPECT_NE(run(1, {"calibrate", "--board", (folder_.path() / "none").string()}).find("no PNG"),

@@ -311,8 +311,8 @@ CalibrationRun run_of_rig(const CalibrateBoardArguments& arguments) {
   ScanStore store(config.data);
   Scanner scanner(rig, config.limits, store);
   scanner.expect_ready();
-  scanner.look_at_board(metres_from_mm(
-      arguments.square_mm));  // cannot be refused as busy: this process does nothing else
+  scanner.look_at_board(metres_from_mm(arguments.square_mm.value_or(
+      board_square_mm)));  // cannot be refused as busy: this process does nothing else
   const CalibrationRun run = follow_calibration(scanner, signal.token(), show_advice);
   if (run.failure) {
     throw to_error(*run.failure);
@@ -338,6 +338,11 @@ bool calibrate_board(const CalibrateBoardArguments& arguments) {
     const CalibrationRun run = run_of_rig(arguments);
     write_lens_report(*run.lens, run.optics, arguments);
     return run.lens->accepted;
+  }
+  if (arguments.square_mm) {
+    throw Error(ErrorCode::bad_settings,
+                "--square-mm: the lens that pictures show does not depend on the squares' side",
+                "Leave --square-mm out, or leave out the folder, to measure the rig's Kinect.");
   }
   const LensReport report = report_from(arguments.folder);
   if (report.accepted && arguments.keep && !arguments.keep->empty()) {

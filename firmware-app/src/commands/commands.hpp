@@ -150,7 +150,7 @@ struct CalibrateBoardArguments {
   std::optional<std::string> keep = {};  ///< serial number of the camera whose lens to store
   std::filesystem::path pdf = {};        ///< output of `print_board`
   std::string paper = "a4";              ///< paper size of the PDF
-  double square_mm = 15;                 ///< side of the board's squares, as measured
+  std::optional<double> square_mm = {};  ///< side of the board's squares, as measured
   bool json = false;                     ///< one line of JSON in place of text
   RigArguments rig = {};
   ConfigArguments config = {};

@@ -77,4 +77,6 @@ test('a Kinect\'s optics have a scale, and nothing configured', () => {
   assert.match(keptText({...calibration, lens: null, optics: null}), /Not measured/);
   const kept = {...record, source: 'board', at: '2026-11-28T22:47:46Z', history: []};
   assert.match(keptText({...calibration, lens: null, optics: kept}), /Measured with a board/);
+  const improved = {...kept, source: 'scan', at: '2026-11-29T08:00:00Z', history: [kept]};
+  assert.equal(keptText({...calibration, lens: null, optics: improved}), keptText({...calibration, lens: null, optics: kept}));
 });

@@ -15,7 +15,8 @@ const usualDistance = 300;  // mm from camera to object, at which errors are sho
 /** @param {Calibration} calibration */
 export function keptText({lens, optics}) {
   if (!lens) {
-    return optics?.source === 'board' ? text('lens.kinect-kept', {when: when(optics.at)}) : text('lens.kinect-unknown');
+    const byBoard = optics && [optics, ...optics.history].find(({source}) => source === 'board');  // later turns improve on it
+    return byBoard ? text('lens.kinect-kept', {when: when(byBoard.at)}) : text('lens.kinect-unknown');
   }
   const kept = lens.kept;
   return kept ? text('lens.kept', {when: when(kept.at), serial: kept.serial, rms: fixed(kept.rms_px, 2)}) : text('lens.configured');

@@ -5,6 +5,9 @@ import {
   foundLens, keptText, lensFiguresOf, lensOutcomeOf, lensProgressOf, missingPart, opticsFiguresOf,
 } from '../../web/scanner/lens_words.js';
 import {calibration} from './examples.js';
+import * as de from '../../web/texts/de.js';
+import * as es from '../../web/texts/es.js';
+import * as fr from '../../web/texts/fr.js';
 
 const told = {fx: 682.4, fy: 682.4, cx: 409.5, cy: 307.5, k1: 0, k2: 0};
 const lens = {fx: 690.59, fy: 689.22, cx: 414.4, cy: 303.8, k1: -0.06, k2: 0.02};
@@ -79,4 +82,18 @@ test('a Kinect\'s optics have a scale, and nothing configured', () => {
   assert.match(keptText({...calibration, lens: null, optics: kept}), /Measured with a board/);
   const improved = {...kept, source: 'scan', at: '2026-11-29T08:00:00Z', history: [kept]};
   assert.equal(keptText({...calibration, lens: null, optics: improved}), keptText({...calibration, lens: null, optics: kept}));
+});
+
+test('a Kinect\'s outcome is worded for its optics, in each language', () => {
+  const kinect = (changes) => ({...during(changes), lens: null});
+  const found = lensOutcomeOf(kinect({state: 'done', report: {...report, optics: {...lens, sigma, depth_scale: 1.01}}}));
+  assert.match(found.detail, /^From 14 pictures; .* 0\.07 pixels from where these optics show them\.$/);
+  assert.match(found.hint, /measure the pose again with a turn/);
+  const reason = 'the sensor measured the board\'s depth in fewer than 5 places';
+  const refused = lensOutcomeOf(kinect({state: 'refused', report: {...report, accepted: false, reason}}));
+  assert.match(refused.title, /optics are not known/);
+  assert.match(refused.hint, /still for two seconds/);
+  for (const language of [de, es, fr]) {
+    assert.ok(language.said[reason.replace('5', '{}')]);
+  }
 });

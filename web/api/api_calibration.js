@@ -95,7 +95,7 @@ const changing = (request) => request.finally(() => {
   recent = null;
 });
 
-/** @param {{kind: 'turn', stops: number} | {kind: 'wall', frames: number} | {kind: 'lens'}} what */
+/** @param {{kind: 'turn', stops: number} | {kind: 'wall', frames: number} | {kind: 'lens', square_mm?: number}} what */
 export const measure = (what) => changing(json('calibration', sending('POST', what)));
 
 /** @returns {Promise<import('../sensor/map_picture.js').MapPicture>} */

@@ -82,7 +82,8 @@ function showFigures(calibration) {
 /** Words the card for a Kinect. */
 function nameKinect() {
   /** @type {Record<string, string>} */
-  const own = {'lens.title': 'lens.kinect', 'lens.about': 'lens.kinect-about', 'lens.hold': 'lens.kinect-hold'};
+  const own = {'lens.title': 'lens.kinect', 'lens.about': 'lens.kinect-about',
+    'lens.measure': 'lens.kinect-measure', 'lens.hold': 'lens.kinect-hold'};
   for (const node of /** @type {NodeListOf<HTMLElement>} */ (element('lens').querySelectorAll('[data-text]'))) {
     const key = own[node.dataset.text ?? ''];
     if (key) {
@@ -92,6 +93,17 @@ function nameKinect() {
   }
   const help = part(element('lens'), 'a[href*="help/"]');
   help.setAttribute('href', 'help/calibration.html#the-optics-from-a-printed-board');
+  show(element('lens-square'), true);
+}
+
+/** Has a board looked for, whose squares a Kinect has to know. @param {boolean} isKinect */
+async function begin(isKinect) {
+  const square = /** @type {HTMLInputElement} */ (element('lens-square-mm'));
+  if (!isKinect) {
+    await requests.measure({kind: 'lens'});
+  } else if (square.reportValidity()) {
+    await requests.measure({kind: 'lens', square_mm: square.valueAsNumber});
+  }
 }
 
 /** Shows the state of the lens calibration. @param {Calibration} calibration */
@@ -127,7 +139,7 @@ export async function prepareLens(act, isKinect) {
   }
   const click = (/** @type {string} */ id, /** @type {string} */ failure, /** @type {() => Promise<unknown>} */ action) =>
     part(element('lens'), `#${id}`).addEventListener('click', () => act(failure, action, 'lens-problem'));
-  click('lens-begin', 'lens.not-begun', () => requests.measure({kind: 'lens'}));
+  click('lens-begin', 'lens.not-begun', () => begin(isKinect));
   click('lens-cancel', 'lens.not-cancelled', requests.cancel);
   click('lens-solve', 'lens.not-solved', solve);
   click('lens-keep', 'lens.not-kept', () => requests.change({lens: 'keep'}));

@@ -15,7 +15,8 @@ const usualDistance = 300;  // mm from camera to object, at which errors are sho
 /** @param {Calibration} calibration */
 export function keptText({lens, optics}) {
   if (!lens) {
-    const byBoard = optics && [optics, ...optics.history].find(({source}) => source === 'board');  // later turns improve on it
+    // A later turn or scan improves on what the board told.
+    const byBoard = optics && [optics, ...optics.history].find(({source}) => source === 'board');
     return byBoard ? text('lens.kinect-kept', {when: when(byBoard.at)}) : text('lens.kinect-unknown');
   }
   const kept = lens.kept;
@@ -79,6 +80,11 @@ export function lensOutcomeOf(calibration) {
     return null;
   }
   const found = foundLens(calibration);
+  if (found?.optics) {
+    const views = text('lens.pictures', {count: found.views});
+    return {tone: 'good', title: text('lens.kinect-found'), hint: text('lens.kinect-found-hint'),
+      detail: text('lens.kinect-found-about', {views, rms: fixed(found.rms_px ?? 0, 2)})};
+  }
   if (found) {
     return {tone: 'good', title: text('lens.found'), hint: text('lens.found-hint'),
       detail: text('lens.found-about', {views: text('lens.pictures', {count: found.views}), rms: fixed(found.rms_px ?? 0, 2), off: millimetres(offAtObject(found))})};
@@ -87,7 +93,10 @@ export function lensOutcomeOf(calibration) {
     return {tone: 'idle', title: text('run.cancelled'), detail: text('update.unchanged'), hint: ''};
   }
   if (run.state === 'refused') {
-    return {tone: 'warn', title: text('lens.refused'), detail: sentence(/** @type {LensReport} */ (run.report).reason), hint: text('lens.refused-hint')};
+    const isKinect = !calibration.lens;
+    return {tone: 'warn', title: text(isKinect ? 'lens.kinect-refused' : 'lens.refused'),
+      detail: sentence(/** @type {LensReport} */ (run.report).reason),
+      hint: text(isKinect ? 'lens.kinect-refused-hint' : 'lens.refused-hint')};
   }
   return {tone: 'bad', title: text('run.failed'), detail: sentence(run.error ? refusalText(run.error) : ''), hint: sentence(run.error?.hint ?? '')};
 }

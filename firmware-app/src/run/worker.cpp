@@ -858,7 +858,7 @@ void Worker::find_optics(CalibrationRun& run, double square, const std::stop_tok
   if (run.camera.empty()) {
     throw Error(ErrorCode::sensor_other,
                 sensor.name() + ": reports no serial number, under which its optics could be kept",
-                "Measure a known length instead.");
+                "Measure a known length instead.", {{"no_serial", sensor.name()}});
   }
   const auto show = [&](const Picture& picture, const BoardLook& look) {
     set_sensor_ready(sensor.name());
@@ -891,7 +891,8 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
   if (camera.serial().empty()) {
     throw Error(ErrorCode::sensor_other,
                 camera.name() + ": reports no serial number, under which its lens could be kept",
-                "Take pictures of a board, and use octurn calibrate --board.");
+                "Take pictures of a board, and use octurn calibrate --board.",
+                {{"no_serial", camera.name()}});
   }
   const Intrinsics lens = told_laser_->lens;
   run.camera = camera.serial();

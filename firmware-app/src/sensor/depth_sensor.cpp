@@ -7,7 +7,8 @@ namespace octurn {
 
 std::optional<Picture> DepthSensor::read_infrared(const std::stop_token& /*stop*/) {
   throw Error(ErrorCode::sensor_other, name() + ": shows no infrared pictures",
-              "A printed board is for a Kinect v1, or for a camera with lasers.");
+              "A printed board is for a Kinect v1, or for a camera with lasers.",
+              {{"no_infrared", name()}});
 }
 
 void DepthSensor::show_board(int /*hold*/) {}

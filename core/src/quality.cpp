@@ -58,6 +58,9 @@ constexpr double unmapped_surface_sigma = 0.0003;
 constexpr double data_sheet_focal_sigma = 0.015;  // relative, of published units
 constexpr double stated_sigmas = 2;
 
+constexpr double max_warm_up = 300;  // seconds between a scan and its map
+constexpr double warm = 1800;        // seconds; sensors of this kind drift for 30 to 60 minutes
+
 /// Relative sigma of the focal length with which a pose's snapshots are read.
 /// @param seen  as measured from the snapshots, also where it was not applied
 double focal_sigma(const Scan& scan, const std::optional<SolvedPose>& solved,
@@ -421,6 +424,26 @@ std::optional<SizeError> expected_size_error(const Scan& scan, const Eigen::Vect
   return SizeError{
       .length = length,
       .error = stated_sigmas * std::hypot(length * std::hypot(scan.scale_sigma, focal), surface)};
+}
+
+void add_warm_up(Quality& quality, const Scan& scan) {
+  if (!scan.sensor_map || !scan.sensor_map->on_for || !scan.sensor_on_for) {
+    return;
+  }
+  const double of_scan = std::min(*scan.sensor_on_for, warm);
+  const double of_map = std::min(*scan.sensor_map->on_for, warm);
+  if (std::abs(of_scan - of_map) > max_warm_up) {
+    const double scan_min = std::round(*scan.sensor_on_for / 60);
+    const double map_min = std::round(*scan.sensor_map->on_for / 60);
+    quality.reasons.push_back(
+        {.code = "warm-up",
+         .detail = "the sensor had been on for " + number_text("%.0f", scan_min) +
+                   " minutes at this scan, and for " + number_text("%.0f", map_min) +
+                   " when its map was made: its error changes while it warms up",
+         .hint = "Let the sensor warm up, and keep it on between scans, which is a setting; then "
+                 "make its map again.",
+         .parameters = {{"scan_min", scan_min}, {"map_min", map_min}}});
+  }
 }
 
 Quality judge(const ScanFigures& scan, const ModelReport& model,

@@ -108,6 +108,10 @@ std::vector<Field> sensor_fields(Config& config) {
       {.key = "sensor",
        .help = "kind of sensor: depth is a depth sensor, laser-line a camera with line lasers",
        .access = choice(config.sensor, {SensorKind::depth, SensorKind::laser_line})},
+      {.key = "keep_sensor_on",
+       .help = "keep the sensor on between scans, so that it stays warm; else it is switched off "
+               "half a minute after its last use",
+       .access = flag(config.keep_sensor_on)},
       {.key = "laser",
        .help = "the camera and its lasers, below",
        .access = object(fields(config.laser),

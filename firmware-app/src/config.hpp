@@ -23,7 +23,8 @@ struct Config {
   ScanSettings scan = {};  ///< defaults of a scan
   StepperSettings turntable = {};
   SensorKind sensor = SensorKind::depth;
-  LaserSettings laser = {};  ///< used if `sensor` is laser_line
+  bool keep_sensor_on = false;  ///< between scans
+  LaserSettings laser = {};     ///< used if `sensor` is laser_line
 };
 
 /// The default configuration file. It need not exist.
@@ -52,7 +53,7 @@ std::vector<Field> fields(Config& config);
 std::vector<Field> network_fields(Config& config);
 /// The setting `data`, the folder of scans.
 std::vector<Field> data_fields(Config& config);
-/// The settings `sensor` and `laser`.
+/// The settings `sensor`, `keep_sensor_on` and `laser`.
 std::vector<Field> sensor_fields(Config& config);
 
 /// The configuration in the form of the file, with every key. It contains no secret.

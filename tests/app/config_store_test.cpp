@@ -112,12 +112,15 @@ TEST_F(ConfigStores, PutAScansSettingsInForceAtOnceAndTellOfTheRest) {
   ConfigStore store = open();
   store.change({{"scan", {{"snapshots", 12}}},
                 {"host_names", {"scanner.example"}},
+                {"keep_sensor_on", true},
                 {"threads", 3},
                 {"turntable", {{"gear_ratio", 2}}}});
   EXPECT_EQ(store.config().scan.snapshots, 12);
   EXPECT_EQ(store.config().host_names, std::vector<std::string>{"scanner.example"});
   EXPECT_EQ(store.config().turntable.gear_ratio, 4);
-  EXPECT_EQ(store.restart_needed(), (std::vector<std::string>{"threads", "turntable.gear_ratio"}));
+  EXPECT_EQ(store.restart_needed(),
+            (std::vector<std::string>{"keep_sensor_on", "threads", "turntable.gear_ratio"}));
+  EXPECT_TRUE(open().config().keep_sensor_on);
   EXPECT_EQ(open().restart_needed(), std::vector<std::string>{});
 }
 

@@ -58,7 +58,7 @@ TEST(Config, IsWrittenAsItIsRead) {
                     "speed_deg_per_s": 120.0, "start_speed_deg_per_s": 10.0,
                     "acceleration_deg_per_s2": 80.0, "settle_ms": 20, "idle_release_s": 30,
                     "take_up_steps": 5},
-      "sensor": "depth",
+      "sensor": "depth", "keep_sensor_on": true,
       "laser": {"width": 640, "height": 480, "fx": 500.5, "fy": 501.0, "cx": 319.5, "cy": 239.5,
                 "k1": -0.05, "k2": 0.25, "exposure_ms": 25, "gain": 2.5,
                 "platform_from_sensor": [[1, 0, 0, 0.5], [0, 0, 1, -0.25], [0, -1, 0, 0.125],
@@ -77,6 +77,7 @@ TEST(Config, ReadsAFileOfVersion01AsThatDid) {
   expected["scan"].update(
       {{"calibrate", "auto"}, {"depth_scale", 1.0}, {"parts", "main"}});  // later keys
   expected["sensor"] = "depth";
+  expected["keep_sensor_on"] = false;
   expected["laser"] = to_json(Config())["laser"];
   // Later keys, in degrees: a turn has 400 * 16 * 2.5 steps.
   json& turntable = expected["turntable"];

@@ -2,10 +2,12 @@
 
 #include <atomic>
 #include <stdexcept>
+#include <thread>
 #include <utility>
 
 #include "app/scanner_fixture.hpp"
 #include "app/wrapped_sensor.hpp"
+#include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
 #include "support/thrown_error.hpp"
 
@@ -168,6 +170,30 @@ TEST_F(ScannerTest, ShowsWhatItSawLastDuringAScan) {
   wait_for_snapshots(scanner, 1);
   EXPECT_EQ(scanner.camera_frame()->frame.height, 480);
   EXPECT_TRUE(scanner.status().busy());
+}
+
+// The worker looks every five seconds.
+TEST_F(ScannerTest, SwitchesTheSensorOffUnlessItIsKeptOn) {
+  RigOptions options = rig();
+  options.sensor_off_after = 0s;
+  {
+    Scanner scanner(options, {}, store_);
+    scanner.camera_frame();
+    const auto begin = std::chrono::steady_clock::now();
+    while (scanner.known_sensor()->since && std::chrono::steady_clock::now() - begin < patience) {
+      std::this_thread::sleep_for(100ms);
+    }
+    EXPECT_FALSE(scanner.known_sensor()->since);
+  }
+  options.sensor_off_after.reset();
+  Scanner warm(options, {}, store_);
+  warm.camera_frame();
+  std::this_thread::sleep_for(11s);
+  EXPECT_TRUE(warm.known_sensor()->since);
+  const Job job = scan(warm, few_snapshots());
+  const auto on_for = read_scan(store_.folder(job.id)).sensor_on_for;
+  ASSERT_TRUE(on_for);
+  EXPECT_GE(*on_for, 11);
 }
 
 }  // namespace

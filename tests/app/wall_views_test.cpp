@@ -16,10 +16,10 @@ namespace {
 namespace fs = std::filesystem;
 
 /// A simulated Kinect's view of a wall. @param distance  metres
-WallView look_at(double distance) {
+WallView look_at(double distance, std::optional<double> on_for = {}) {
   SimulatedKinect kinect(Scene::of_wall(distance), 1, 1, 1);
   DepthFrame frame{.width = 640, .height = 480, .depth = std::vector<std::uint16_t>(640U * 480U)};
-  WallView view(Intrinsics{});
+  WallView view(Intrinsics{}, on_for);
   for (std::uint32_t number = 1; number <= 6; ++number) {
     kinect.expose(0, number, frame.depth);
     view.add(frame);
@@ -73,6 +73,17 @@ TEST_F(WallViews, GiveWayToOneAtTheirDistance) {
   ASSERT_EQ(again.walls.size(), 2U);
   EXPECT_NEAR(again.walls[0].distance, 0.7, 0.005);
   EXPECT_NEAR(again.walls[1].distance, 0.9, 0.005);
+}
+
+// The first view is read back from its file.
+TEST_F(WallViews, TellForHowLongTheSensorWasOn) {
+  add_wall(data_.path(), "A1", look_at(0.65, 620));
+  EXPECT_EQ(map().on_for, 620);
+  add_wall(data_.path(), "A1", look_at(0.9, 700));
+  EXPECT_EQ(map().on_for, 620) << "the shorter of both";
+  EXPECT_EQ(find_map_summary(data_.path(), "A1")->on_for, 620);
+  add_wall(data_.path(), "A1", look_at(0.65));
+  EXPECT_EQ(map().on_for, 700);
 }
 
 TEST_F(WallViews, ChangeNothingWhereTheWallIsRefused) {

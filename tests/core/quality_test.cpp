@@ -407,5 +407,35 @@ TEST(SizeError, OfTurnsMadeIntoOneModelIsThatOfTheWorst) {
   EXPECT_GT(error_of_150_mm(scan), known + 2);
 }
 
+/// The codes of a verdict's reasons, of a scan and a map with a sensor that was on for so long.
+Codes codes_of_warm_up(std::optional<double> scan_s, std::optional<double> map_s) {
+  Scan scan{.sensor_on_for = scan_s};
+  scan.sensor_map = std::make_shared<SensorMap>(SensorMap{.on_for = map_s});
+  Quality quality;
+  add_warm_up(quality, scan);
+  EXPECT_EQ(quality.verdict, Verdict::good);
+  return codes(quality);
+}
+
+TEST(WarmUp, IsMentionedIfScanAndMapDifferByMoreThanFiveMinutes) {
+  EXPECT_EQ(codes_of_warm_up(20, 620), Codes{"warm-up"});
+  EXPECT_EQ(codes_of_warm_up(4000, 620), Codes{"warm-up"});
+  EXPECT_EQ(codes_of_warm_up(400, 620), Codes{});
+  EXPECT_EQ(codes_of_warm_up(9000, 1800), Codes{}) << "both warm";
+  EXPECT_EQ(codes_of_warm_up({}, 620), Codes{});
+  EXPECT_EQ(codes_of_warm_up(20, {}), Codes{});
+  Quality without_map;
+  add_warm_up(without_map, Scan{.sensor_on_for = 20});
+  EXPECT_TRUE(without_map.reasons.empty());
+}
+
+TEST(WarmUp, IsSaidInMinutes) {
+  Scan scan{.sensor_on_for = 20};
+  scan.sensor_map = std::make_shared<SensorMap>(SensorMap{.on_for = 620});
+  Quality quality;
+  add_warm_up(quality, scan);
+  EXPECT_EQ(quality.reasons.front().parameters, (Parameters{{"map_min", 10.0}, {"scan_min", 0.0}}));
+}
+
 }  // namespace
 }  // namespace octurn

@@ -2,9 +2,16 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {actionOf, badgeOf, verdictOf} from '../../web/scan/quality.js';
+import {reasonText} from '../../web/base/wording.js';
 import {finished} from './examples.js';
 
 const judged = (verdict, reasons = [], changes = {}) => ({...finished.model, quality: {verdict, reasons}, ...changes});
+
+test('a sensor that warmed up differently is told in minutes, with the way to its map', () => {
+  const reason = {code: 'warm-up', detail: '', hint: '', parameters: {scan_min: 1, map_min: 12}};
+  assert.match(reasonText(reason), /for 1 minute at this scan, and for 12 minutes when its map was made/);
+  assert.equal(actionOf('warm-up')?.href, '#calibrate');
+});
 
 test('a good model is ready to slice only if it is closed', () => {
   assert.match(verdictOf(judged('good')).text, /Ready to slice/);

@@ -57,7 +57,7 @@ import {json, sending} from './api.js';
  *
  * @typedef {PoseRecord & {
  *   shift_mm: number | null, tilt_deg: number | null,
- *   sensor_map: {serial: string, at: string, rms_before: number, rms_after: number} | null,
+ *   sensor_map: {serial: string, at: string, on_for_s: number | null, rms_before: number, rms_after: number} | null,
  *   sensor_on_s: number | null,
  *   infrared: boolean,
  *   optics: (OpticsRecord & {history: OpticsRecord[]}) | null,

@@ -19,6 +19,7 @@ function valueText(name, value) {
     case 'px': return number(Math.round(value));
     case 'triangles': return number(value);
     case 'cm3': return `${number(value)} cm³`;
+    case 'min': return text('count.minutes', {count: value});
     case 'ms': return `${number(value)} ms`;
     case 'side': return isText(`box-side.${value}`) ? text(`box-side.${value}`) : value;
     default: return value;

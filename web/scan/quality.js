@@ -35,6 +35,7 @@ const actions = {
   'alike': calibrate,
   'top-unseen': again,
   'hollow-filled': again,
+  'warm-up': flatten,
   'moved': again,
   'little-seen': again,
   'filled-far': again,

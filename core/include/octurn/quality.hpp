@@ -32,7 +32,7 @@ std::string_view to_string(Verdict verdict);
 struct QualityReason {
   /// "empty", "too-low", "turntable", "alike", "stops-disagree", "moved", "focal-length", "optics",
   /// "floats", "sunk", "top-unseen", "little-seen", "filled-far", "hollow-filled", "cut-by-box",
-  /// "parts-dropped", "part-missing"
+  /// "parts-dropped", "part-missing", "warm-up"
   std::string code = {};
   std::string detail = {};     ///< what was found and its size, for people
   std::string hint = {};       ///< what to do about it
@@ -54,7 +54,8 @@ struct SizeError {
 /// The verdict on a model, and why.
 struct Quality {
   Verdict verdict = Verdict::good;
-  /// Causes first; what follows from a cause is left out. Of a good model only "hollow-filled".
+  /// Causes first; what follows from a cause is left out. Of a good model only
+  /// "hollow-filled" and "warm-up".
   std::vector<QualityReason> reasons = {};
   std::optional<SizeError> size_error = {};
 
@@ -127,6 +128,11 @@ class ScanCheck {
 /// @return nothing for a scan by laser line or with free poses
 std::optional<SizeError> expected_size_error(const Scan& scan, const Eigen::Vector3d& size,
                                              const std::optional<SolvedOptics>& seen = {});
+
+/// Adds the reason "warm-up" to a verdict, which stays: the sensor's map was made when the sensor
+/// had been on for another time than in the scan, by more than five minutes. What lies beyond half
+/// an hour counts as half an hour.
+void add_warm_up(Quality& quality, const Scan& scan);
 
 /// Judges a finished model.
 /// @param model     its figures

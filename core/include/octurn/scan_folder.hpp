@@ -84,6 +84,7 @@ struct Scan {
   /// Of a depth sensor, if measured before the scan. Sigmas of 0: the file does not have them.
   std::optional<SolvedOptics> optics = {};
   double scale_sigma = unknown_scale_sigma;  ///< of the depths' scale, relative
+  std::optional<double> sensor_on_for = {};  ///< seconds that the sensor had been on, if known
   /// As configured when the scan was taken; metres.
   Eigen::Isometry3d platform_from_sensor = Eigen::Isometry3d::Identity();
   std::optional<SolvedPose> solved = {};

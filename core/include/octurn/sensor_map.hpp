@@ -33,6 +33,9 @@ struct SensorMap {
   /// With which the walls were planes; nothing: those that the sensor reports. Distortion that
   /// these optics take out is not in the map.
   std::optional<SensorOptics> optics = {};
+  /// Seconds that the sensor had been on, at that view of a wall where it was the shortest; nothing
+  /// if no view knows it.
+  std::optional<double> on_for = {};
 };
 
 /// A step of a Kinect v1's disparity in inverse depth, 1/m (z = 345.489 m / disparity): the usual
@@ -68,7 +71,8 @@ struct Wall {
   std::string sensor_name = {};
   std::string sensor_serial = {};  ///< empty if unknown
   Intrinsics intrinsics = {};
-  std::vector<std::string> frames = {};  ///< the depth images, relative to the folder
+  std::optional<double> sensor_on_for = {};  ///< seconds that the sensor had been on, if known
+  std::vector<std::string> frames = {};      ///< the depth images, relative to the folder
 };
 
 /// Parses and checks the text of a `wall.json`.
@@ -95,19 +99,22 @@ std::string wall_frame_file(int index);
 /// of frames.
 class WallView {
  public:
-  explicit WallView(const Intrinsics& intrinsics);
+  /// @param on_for  seconds that the sensor had been on, if known
+  explicit WallView(const Intrinsics& intrinsics, std::optional<double> on_for = {});
 
   /// @throws std::invalid_argument  if the frame has another size than the intrinsics say
   void add(const DepthFrame& frame);
 
   const Intrinsics& intrinsics() const { return intrinsics_; }
   int frames() const { return frames_; }
+  std::optional<double> on_for() const { return on_for_; }
 
   /// Mean inverse depth of a pixel, 1/m; 0 if it has a reading in less than half of the frames.
   double inverse_depth(int u, int v) const;
 
  private:
   Intrinsics intrinsics_;
+  std::optional<double> on_for_;
   int frames_ = 0;
   std::vector<float> sum_;  // 1/m
   std::vector<std::uint16_t> readings_;

@@ -401,6 +401,20 @@ void expect_one_sensor(std::span<const WallView> views) {
 
 }  // namespace
 
+namespace {
+
+std::optional<double> shortest_on_for(std::span<const WallView> views) {
+  std::optional<double> shortest;
+  for (const WallView& view : views) {
+    if (view.on_for() && (!shortest || *view.on_for() < *shortest)) {
+      shortest = view.on_for();
+    }
+  }
+  return shortest;
+}
+
+}  // namespace
+
 SensorMapReport fit_sensor_map(std::span<const WallView> views,
                                const std::optional<SensorOptics>& optics) {
   expect_one_sensor(views);
@@ -427,6 +441,7 @@ SensorMapReport fit_sensor_map(std::span<const WallView> views,
   const BlockMap blocks = combine(walls);
   report.map = to_map(blocks, grid, lens);
   report.map.optics = optics;
+  report.map.on_for = shortest_on_for(views);
   for (std::size_t i = 0; i < walls.size(); ++i) {
     WallReport& wall = report.walls[i];
     wall.before = rms(walls[i].residuals, [](std::size_t) { return 0.0; });

@@ -48,8 +48,9 @@ WallBlock make_block(const WallView& view, const Intrinsics& lens, int first_u, 
 
 }  // namespace
 
-WallView::WallView(const Intrinsics& intrinsics)
+WallView::WallView(const Intrinsics& intrinsics, std::optional<double> on_for)
     : intrinsics_(intrinsics),
+      on_for_(on_for),
       sum_(static_cast<std::size_t>(intrinsics.width) *
            static_cast<std::size_t>(intrinsics.height)),
       readings_(sum_.size()) {}

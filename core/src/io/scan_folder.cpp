@@ -131,7 +131,8 @@ Scan scan_from(const json& document) {
             .intrinsics = sensor.intrinsics,
             .laser = std::move(sensor.laser),
             .optics = sensor.optics,
-            .scale_sigma = sensor.scale_sigma};
+            .scale_sigma = sensor.scale_sigma,
+            .sensor_on_for = sensor.on_for};
   for (const JsonValue& shot : root.at("snapshots").elements()) {
     scan.shots.push_back(shot_from(shot, number, scan.laser));
   }
@@ -237,7 +238,8 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
                                     .intrinsics = scan.intrinsics,
                                     .laser = scan.laser,
                                     .optics = scan.optics,
-                                    .scale_sigma = scan.scale_sigma})},
+                                    .scale_sigma = scan.scale_sigma,
+                                    .on_for = scan.sensor_on_for})},
       {"snapshots", shots},
   };
   if (!has_free_poses(scan)) {

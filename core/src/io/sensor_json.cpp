@@ -20,6 +20,8 @@ namespace {
 constexpr std::size_t max_image_bytes = 256U
                                         << 20U;  // twice an uncompressed image of max_image_side
 
+constexpr double max_on_for = 1e9;  // seconds: 30 years
+
 bool is_control(char character) { return static_cast<unsigned char>(character) < ' '; }
 
 /// Optics of earlier scans have no sigmas: they are read as 0.
@@ -52,6 +54,7 @@ SensorJson sensor_from(const JsonValue& object) {
     sensor.scale_sigma = keys.number("scale_sigma", 0, 1).value_or(unknown_scale_sigma);
   }
   sensor.serial = keys.text("serial").value_or("");
+  sensor.on_for = keys.number("on_for_s", 0, max_on_for);
   return sensor;
 }
 
@@ -75,6 +78,9 @@ nlohmann::json to_json(const SensorJson& sensor) {
   }
   if (!sensor.serial.empty()) {
     object["serial"] = sensor.serial;
+  }
+  if (sensor.on_for) {
+    object["on_for_s"] = *sensor.on_for;
   }
   return object;
 }

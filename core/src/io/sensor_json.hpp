@@ -21,6 +21,7 @@ struct SensorJson {
   std::optional<LaserCamera> laser = {};    ///< none: the sensor measures depth
   std::optional<SolvedOptics> optics = {};  ///< of a depth sensor, if they were known
   double scale_sigma = unknown_scale_sigma;
+  std::optional<double> on_for = {};  ///< seconds that it had been on, if known
 };
 
 SensorJson sensor_from(const JsonValue& object);

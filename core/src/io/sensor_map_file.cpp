@@ -56,6 +56,9 @@ json to_document(const SensorMap& map) {
   if (map.optics) {
     document["optics"] = to_json(*map.optics);
   }
+  if (map.on_for) {
+    document["on_for_s"] = *map.on_for;
+  }
   return document;
 }
 
@@ -72,6 +75,7 @@ SensorMap from_json(const json& document) {
   if (const auto optics = keys.value("optics")) {
     map.optics = optics_from(*optics);
   }
+  map.on_for = keys.number("on_for_s", 0, std::numeric_limits<double>::max());
   const JsonValue depths = keys.at("inverse_depths");
   const std::vector<JsonValue> values = depths.elements();
   if (values.empty() || values.size() > 2) {

@@ -32,6 +32,7 @@ Wall wall_from(const json& document) {
   Wall wall{.sensor_name = std::move(sensor.name),
             .sensor_serial = std::move(sensor.serial),
             .intrinsics = sensor.intrinsics,
+            .sensor_on_for = sensor.on_for,
             .frames = {}};
   const JsonValue frames = root.at("frames");
   for (const JsonValue& frame : frames.elements()) {
@@ -71,7 +72,8 @@ void write_wall(const std::filesystem::path& folder, const Wall& wall) {
                       {"version", 1},
                       {"sensor", to_json(SensorJson{.name = wall.sensor_name,
                                                     .serial = wall.sensor_serial,
-                                                    .intrinsics = wall.intrinsics})},
+                                                    .intrinsics = wall.intrinsics,
+                                                    .on_for = wall.sensor_on_for})},
                       {"frames", wall.frames}};
   write_file(folder / "wall.json",
              document.dump(1, ' ', false, json::error_handler_t::replace) + "\n");

@@ -112,6 +112,7 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
   const auto& calibration = build.calibration ? build.calibration : input.job.calibration;
   quality.size_error = expected_size_error(
       scan, report->size, calibration ? calibration->optics : std::optional<SolvedOptics>());
+  add_warm_up(quality, scan);
   report->places = {};  // dropped: every request for a job's state copies it
   build.model = {.report = *std::move(report),
                  .build_time = Clock::now() - begin,

@@ -56,6 +56,7 @@ SensorMapSummary summarise(const SensorMap& map) {
                            .made = map.made,
                            .before = map.before,
                            .after = map.after,
+                           .on_for = map.on_for,
                            .columns = map.width / block,
                            .rows = map.height / block,
                            .errors = {}};
@@ -113,6 +114,7 @@ json to_json(const SensorMapReport& report) {
 json to_json(const SensorMapSummary& map) {
   return {{"serial", map.serial},
           {"at", map.made},
+          {"on_for_s", map.on_for ? json(*map.on_for) : json()},
           {"rms_before", to_units(map.before)},
           {"rms_after", to_units(map.after)}};
 }

@@ -25,9 +25,11 @@ void remove_sensor_map(const std::filesystem::path& data, std::string_view seria
 /// Summary of a map, for display.
 struct SensorMapSummary {
   std::string serial = {};
-  std::string made = {};           ///< UTC, as in ISO 8601
-  double before = 0;               ///< 1/m: rms distance of a wall from a plane
-  double after = 0;                ///< 1/m: the same with the map
+  std::string made = {};  ///< UTC, as in ISO 8601
+  double before = 0;      ///< 1/m: rms distance of a wall from a plane
+  double after = 0;       ///< 1/m: the same with the map
+  /// Seconds that the sensor had been on; see `SensorMap`.
+  std::optional<double> on_for = {};
   int columns = 0;                 ///< blocks of 8 x 8 pixels
   int rows = 0;                    ///< of blocks
   std::vector<float> errors = {};  ///< 1/m: mean of each block at the nearest wall, row by row

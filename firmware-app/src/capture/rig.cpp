@@ -1,6 +1,7 @@
 #include "capture/rig.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "capture/plan.hpp"
@@ -95,6 +96,14 @@ Camera& Rig::camera() {
 Lasers& Rig::lasers() {
   camera();
   return *lasers_;
+}
+
+std::optional<double> Rig::sensor_on_for() const {
+  const auto since = sensor_since();
+  return since ? std::optional(std::floor(
+                     std::chrono::duration<double>(std::chrono::steady_clock::now() - *since)
+                         .count()))
+               : std::nullopt;
 }
 
 double Rig::take_lost_share() {

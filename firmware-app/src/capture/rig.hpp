@@ -46,6 +46,9 @@ struct RigOptions {
   std::optional<PlatformLoad> load = {};
   double platform_angle_deg = 0;  ///< initial angle
   Retries retries = {};           ///< by the clock of a simulated rig
+  /// Time without use after which a `Scanner` switches the sensor off, as its light and its traffic
+  /// on USB disturb others; nullopt: never, so that it stays warm.
+  std::optional<std::chrono::seconds> sensor_off_after = std::chrono::seconds(30);
   /// Settings of a camera with line lasers, which replaces the depth sensor.
   std::optional<LaserSettings> laser = {};
   /// Of the depth sensor, if they are known, with the depth scale; nothing: those that it reports.
@@ -104,6 +107,9 @@ class Rig {
   std::optional<std::chrono::steady_clock::time_point> sensor_since() const {
     return sensor_ || camera_ ? std::optional(sensor_since_) : std::nullopt;
   }
+
+  /// For how many whole seconds the sensor has been open; nullopt while it is closed.
+  std::optional<double> sensor_on_for() const;
 
   /// Opens the turntable if it is closed.
   /// @throws Error "turntable-missing" or "turntable-failed"

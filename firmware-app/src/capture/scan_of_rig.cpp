@@ -44,6 +44,7 @@ Scan scan_of_sensor(Rig& rig, const ScanSettings& settings) {
           .intrinsics = to_intrinsics(rig.sensor(), rig.optics().has_value(), settings),
           .optics = rig.optics(),
           .scale_sigma = scale_sigma(settings.depth_scale, rig.optics()),
+          .sensor_on_for = rig.sensor_on_for(),
           .platform_from_sensor = settings.platform_from_sensor,
           .clip = settings.clip};
 }

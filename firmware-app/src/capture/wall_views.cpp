@@ -64,15 +64,15 @@ DepthFrame to_mean_frame(const WallView& view) {
   return mean;
 }
 
-WallView to_view(const Intrinsics& lens, const DepthFrame& mean) {
-  WallView view(lens);
+WallView to_view(const Intrinsics& lens, const DepthFrame& mean, std::optional<double> on_for) {
+  WallView view(lens, on_for);
   view.add(mean);
   return view;
 }
 
 WallView read_stored_view(const fs::path& folder) {
   const Wall wall = read_wall(folder);
-  return to_view(wall.intrinsics, read_wall_frame(folder, wall, 0));
+  return to_view(wall.intrinsics, read_wall_frame(folder, wall, 0), wall.sensor_on_for);
 }
 
 void keep_map(const fs::path& data, std::string_view serial, SensorMap& map) {
@@ -81,13 +81,14 @@ void keep_map(const fs::path& data, std::string_view serial, SensorMap& map) {
   write_sensor_map(sensor_map_path(data, serial), map);
 }
 
-void keep_view(const fs::path& folder, std::string_view serial, const Intrinsics& lens,
+void keep_view(const fs::path& folder, std::string_view serial, const WallView& view,
                const DepthFrame& mean) {
   fs::remove_all(folder);
   NewFolder made(folder);
   const Wall wall{.sensor_name = "mean of a look",
                   .sensor_serial = std::string(serial),
-                  .intrinsics = lens,
+                  .intrinsics = view.intrinsics(),
+                  .sensor_on_for = view.on_for(),
                   .frames = {wall_frame_file(0)}};
   write_depth_png(made.path() / wall.frames.front(), mean);
   write_wall(made.path(), wall);
@@ -97,11 +98,12 @@ void keep_view(const fs::path& folder, std::string_view serial, const Intrinsics
 }  // namespace
 
 std::optional<WallView> look_at_wall(
-    DepthSensor& sensor, int frames, double wall, const std::stop_token& stop,
+    DepthSensor& sensor, int frames, double wall, std::optional<double> on_for,
+    const std::stop_token& stop,
     const std::function<void(const DepthFrame& frame, int frames)>& on_frame) {
   sensor.show_wall(wall);
   const auto shown = std::chrono::steady_clock::now();
-  WallView view(sensor.intrinsics());
+  WallView view(sensor.intrinsics(), on_for);
   while (view.frames() < frames) {
     const std::optional<TimedFrame> timed = sensor.read(stop);
     if (!timed) {
@@ -146,7 +148,7 @@ SensorMapReport add_wall(const fs::path& data, std::string_view serial, const Wa
   const DepthFrame mean = to_mean_frame(view);
   Intrinsics lens = view.intrinsics();
   lens.depth_unit = mean_unit;
-  std::vector<WallView> views{to_view(lens, mean)};
+  std::vector<WallView> views{to_view(lens, mean, view.on_for())};
   const std::optional<SensorOptics> optics = optics_in_force(data, serial);
   SensorMapReport report = fit_sensor_map(views, optics);
   if (!report.accepted) {
@@ -166,7 +168,8 @@ SensorMapReport add_wall(const fs::path& data, std::string_view serial, const Wa
   report = views.size() > 1 ? fit_sensor_map(views, optics) : std::move(report);
   if (report.accepted) {
     std::ranges::for_each(outdated, [](const fs::path& old) { fs::remove_all(old); });
-    keep_view(folder / std::to_string(std::lround(mm_from_metres(distance))), serial, lens, mean);
+    keep_view(folder / std::to_string(std::lround(mm_from_metres(distance))), serial, views.front(),
+              mean);
     keep_map(data, serial, report.map);
   }
   report.map.near = {};

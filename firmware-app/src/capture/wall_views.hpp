@@ -19,11 +19,13 @@ inline constexpr int max_wall_frames = 200;
 /// a wall.
 ///
 /// @param wall      metres: distance of a simulated sensor's wall
+/// @param on_for    seconds that the sensor had been on, if known
 /// @param on_frame  called with each frame, and the number of frames so far
 /// @return nullopt if stopped first
 /// @throws Error "sensor-..."
 std::optional<WallView> look_at_wall(
-    DepthSensor& sensor, int frames, double wall, const std::stop_token& stop,
+    DepthSensor& sensor, int frames, double wall, std::optional<double> on_for,
+    const std::stop_token& stop,
     const std::function<void(const DepthFrame& frame, int frames)>& on_frame);
 
 // The wall views that a sensor's map is fitted to are stored in the data folder, one for each

@@ -368,7 +368,7 @@ struct WallViews {
 
 WallView read_view(const std::filesystem::path& folder, const Wall& wall,
                    const std::stop_token& stop) {
-  WallView view(wall.intrinsics);
+  WallView view(wall.intrinsics, wall.sensor_on_for);
   for (std::size_t frame = 0; frame < wall.frames.size(); ++frame) {
     if (stop.stop_requested()) {
       throw_stopped("no map was written");

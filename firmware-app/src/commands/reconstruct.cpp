@@ -218,6 +218,7 @@ Quality judge_and_print(const std::vector<ScanFigures>& poses, const Scan& scan,
                         const std::vector<CalibrationFinding>& findings) {
   Quality quality = judge(poses, report, findings);
   quality.size_error = expected_size_error(scan, report.size);
+  add_warm_up(quality, scan);
   print_verdict(quality);
   return quality;
 }

@@ -127,6 +127,7 @@ void record_wall(const RecordArguments& arguments) {
   Wall wall{.sensor_name = sensor.name(),
             .sensor_serial = sensor.serial(),
             .intrinsics = sensor.intrinsics(),
+            .sensor_on_for = rig.sensor_on_for(),
             .frames = {}};
   const int frames = arguments.frames.value_or(usual_wall_frames);
   ProgressBar bar;

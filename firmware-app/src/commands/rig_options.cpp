@@ -95,9 +95,7 @@ RigOptions laser_rig_options(const RigArguments& arguments, const Config& config
                          const LaserSettings&) { return simulate_laser_rig(simulation, speed); }};
 }
 
-}  // namespace
-
-RigOptions rig_options(const RigArguments& arguments, const Config& config) {
+RigOptions options_of(const RigArguments& arguments, const Config& config) {
   if (config.sensor == SensorKind::laser_line) {
     return laser_rig_options(arguments, config);
   }
@@ -116,6 +114,16 @@ RigOptions rig_options(const RigArguments& arguments, const Config& config) {
           .motion = to_simulated_motion(config.turntable),
           .load = load_of(arguments),
           .open_sensor = sensor_opener(to_mechanism(arguments, config.turntable))};
+}
+
+}  // namespace
+
+RigOptions rig_options(const RigArguments& arguments, const Config& config) {
+  RigOptions options = options_of(arguments, config);
+  if (config.keep_sensor_on) {
+    options.sensor_off_after.reset();
+  }
+  return options;
 }
 
 }  // namespace octurn

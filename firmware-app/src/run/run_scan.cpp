@@ -310,6 +310,7 @@ std::optional<Model> Run::build(Clock::time_point captured,
   }
   Quality quality = judge(check_.figures(reconstruction_.options().threads), *report, findings);
   quality.size_error = expected_size_error(scan_, report->size, seen_optics_);
+  add_warm_up(quality, scan_);
   reconstruction_.add_coarser_reason(quality);
   report->places = {};  // dropped: every request for a job's state copies it
   return Model{.report = *std::move(report),

@@ -32,9 +32,8 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto retry_interval = 2s;     // between attempts to read a failed sensor
-constexpr auto open_without_use = 30s;  // then the sensor is closed: its light and traffic end
-constexpr auto idle_beat = 5s;          // between heartbeats while there is nothing to do
+constexpr auto retry_interval = 2s;  // between attempts to read a failed sensor
+constexpr auto idle_beat = 5s;       // between heartbeats while there is nothing to do
 
 // A preview is sent after every snapshot: at most 3 MB, with leaves as fine as a screen shows.
 constexpr double preview_leaf_size = 0.002;  // metres
@@ -188,6 +187,7 @@ Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& p
     : rig_(rig),
       speed_(rig.speed),
       retries_(rig.retries),
+      sensor_off_after_(rig.sensor_off_after),
       told_laser_(rig.laser),
       limits_(limits),
       ports_(ports) {}
@@ -203,7 +203,7 @@ void Worker::work() {
       last_use = Clock::now();
     } else if (ports_.slot.has_ended()) {
       return;
-    } else if (Clock::now() - last_use >= open_without_use) {
+    } else if (sensor_off_after_ && Clock::now() - last_use >= *sensor_off_after_) {
       rig_.close_sensor();
       ports_.board.set_sensor_closed();
     }
@@ -779,7 +779,7 @@ void Worker::measure_wall(CalibrationRun& run, const std::stop_token& stop) {
   };
   const std::filesystem::path data = ports_.store.data();
   const std::optional<WallView> view =
-      look_at_wall(sensor, run.stops, next_wall(data, serial), stop, show);
+      look_at_wall(sensor, run.stops, next_wall(data, serial), rig_.sensor_on_for(), stop, show);
   if (!view) {
     run.state = CalibrationRun::State::cancelled;
     return;

@@ -100,6 +100,7 @@ class Worker {
   Rig rig_;
   double speed_;  // of a simulated rig, relative to real time
   Retries retries_;
+  std::optional<std::chrono::seconds> sensor_off_after_;
   std::optional<LaserSettings> told_laser_;  // from the settings; nullopt: a depth sensor
   Limits limits_;
   WorkerPorts ports_;

@@ -258,6 +258,9 @@ TEST(ParseScan, TakesTheSigmasOfOpticsAndScale) {
   EXPECT_EQ(scan.scale_sigma, unknown_scale_sigma);
   EXPECT_EQ(parse_scan(with("/sensor/scale_sigma", 0.0015)).scale_sigma, 0.0015);
   expect_refused(with("/sensor/scale_sigma", -1), "sensor.scale_sigma");
+  EXPECT_FALSE(scan.sensor_on_for);
+  EXPECT_EQ(parse_scan(with("/sensor/on_for_s", 620)).sensor_on_for, 620);
+  expect_refused(with("/sensor/on_for_s", -1), "sensor.on_for_s");
 }
 
 TEST(ParseScan, RefusesOpticsThatAreIncompleteOrOutOfBounds) {

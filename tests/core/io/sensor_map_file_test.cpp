@@ -52,6 +52,9 @@ TEST(SensorMapFile, RemembersTheOpticsThatItWasMadeWith) {
   EXPECT_FALSE(decode(encode_sensor_map(map)).optics);
   map.optics = SensorOptics{.fx = 590.25, .fy = 589.5, .k1 = -0.0625, .depth_scale = 1.012};
   EXPECT_EQ(decode(encode_sensor_map(map)).optics, map.optics);
+  EXPECT_FALSE(decode(encode_sensor_map(map)).on_for);
+  map.on_for = 620;
+  EXPECT_EQ(decode(encode_sensor_map(map)).on_for, 620);
 }
 
 TEST(SensorMapFile, HoldsAMapOfOneDistance) {

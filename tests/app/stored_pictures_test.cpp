@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "capture/take_stop.hpp"
+#include "capture/take_pictures.hpp"
 #include "store/stored_scan.hpp"
 #include "support/temporary_folder.hpp"
 

@@ -12,7 +12,7 @@
 #include "capture/plan.hpp"
 #include "capture/scan_of_rig.hpp"
 #include "capture/take_depth_image.hpp"
-#include "capture/take_stop.hpp"
+#include "capture/take_pictures.hpp"
 #include "octurn/optics_json.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
@@ -165,7 +165,9 @@ std::optional<TurnReport> measure_turn(const ScanSettings& settings,
     return frames[index];
   };
   try {
-    TurnReport report{.calibration = calibrate(turn, threads), .angles = turn.angles};
+    TurnReport report{.calibration = calibrate(turn, threads),
+                      .angles = turn.angles,
+                      .configured_pose = turn.platform_from_sensor};
     report.replaces_told = report.calibration.accepted && !report.calibration.confirms_told();
     report.before = slice_of_frames(turn, turn.platform_from_sensor, {});
     if (report.calibration.accepted) {
@@ -221,7 +223,8 @@ TurnReport solve_turn(const fs::path& folder, Scan& scan, int threads,
                       const std::stop_token& stop) {
   ScanSolution solution = solve_scan(folder, scan, {}, threads, stop);
   TurnReport report{.calibration = std::move(solution.report),
-                    .configured = scan.laser->lasers,
+                    .configured_pose = scan.platform_from_sensor,
+                    .configured_lasers = scan.laser->lasers,
                     .lasers = solution.solved.lasers,
                     .replaces_told = solution.replaces_told};
   for (const Shot& shot : scan.shots) {

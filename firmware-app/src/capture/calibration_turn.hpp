@@ -39,12 +39,13 @@ inline constexpr int default_calibration_stops = 24;
 /// The sensor's pose as solved from a turn.
 struct TurnReport {
   CalibrationReport calibration = {};
-  std::vector<double> angles = {};     ///< commanded angles of the stops, radians
-  Slice before = {};                   ///< with the configured pose
-  Slice after = {};                    ///< with the solved pose; empty if it was refused
-  std::vector<Laser> configured = {};  ///< lasers with the configured planes; empty: a depth sensor
-  std::vector<Laser> lasers = {};      ///< lasers with the solved planes
-  bool replaces_told = false;          ///< accepted, and differs from the configured pose or planes
+  std::vector<double> angles = {};  ///< commanded angles of the stops, radians
+  Slice before = {};                ///< with the configured pose
+  Slice after = {};                 ///< with the solved pose; empty if it was refused
+  Eigen::Isometry3d configured_pose = Eigen::Isometry3d::Identity();  ///< platform from sensor
+  std::vector<Laser> configured_lasers = {};  ///< with the configured planes; empty: a depth sensor
+  std::vector<Laser> lasers = {};             ///< with the solved planes
+  bool replaces_told = false;  ///< accepted, and differs from the configured pose or planes
 };
 
 /// The progress and result of a measurement of the rig.

@@ -164,8 +164,8 @@ bool calibrate_rig(const CalibrateArguments& arguments) {
     throw Stopped{};
   }
   const TurnReport& report = *run.report;
-  write_calibration_report(report.calibration, report.angles, report.configured, report.lasers,
-                           arguments);
+  write_calibration_report(report.calibration, report.angles, report.configured_lasers,
+                           report.lasers, arguments);
   return report.calibration.accepted;
 }
 

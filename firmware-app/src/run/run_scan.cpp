@@ -16,7 +16,7 @@
 #include "capture/plan.hpp"
 #include "capture/scan_of_rig.hpp"
 #include "capture/take_depth_image.hpp"
-#include "capture/take_stop.hpp"
+#include "capture/take_pictures.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"

@@ -15,7 +15,6 @@
 #include "calibration/sensor_map_files.hpp"
 #include "calibration/solve_pose.hpp"
 #include "capture/board_views.hpp"
-#include "capture/calibration_turn.hpp"
 #include "capture/scan_of_rig.hpp"
 #include "capture/wall_views.hpp"
 #include "log.hpp"
@@ -108,32 +107,14 @@ bool build_and_keep(const BuildCommand& command, const Limits& limits, const Wor
 }
 
 /// Makes the record of an accepted turn. A confirmed pose is the configured one, bit for bit.
-PoseRecord to_record(const TurnReport& report, const ScanSettings& settings, Rig& rig) {
-  if (rig.laser() == nullptr) {
-    PoseRecord record = to_record(report.calibration, PoseOrigin::turn, settings.depth_scale);
-    if (!report.replaces_told) {
-      record.platform_from_sensor = settings.platform_from_sensor;
-    }
-    return record;
-  }
-  PoseRecord record = to_record(report.calibration, PoseOrigin::turn, rig.camera().serial(),
-                                report.replaces_told ? report.lasers : report.configured);
+PoseRecord to_record(const TurnReport& report, const ScanSettings& settings, Capture& capture) {
+  PoseRecord record =
+      capture.to_record(report.calibration, PoseOrigin::turn, settings,
+                        report.replaces_told ? report.lasers : report.configured_lasers);
   if (!report.replaces_told) {
-    record.platform_from_sensor = rig.laser()->platform_from_sensor;
+    record.platform_from_sensor = report.configured_pose;
   }
   return record;
-}
-
-/// Reads the map of the sensor's depth error; null if this machine has none of the frames' size.
-/// @throws Error "scan-malformed"
-std::shared_ptr<const SensorMap> find_sensor_map(const std::filesystem::path& data,
-                                                 std::string_view serial, const Intrinsics& lens) {
-  const std::filesystem::path file = sensor_map_path(data, serial);
-  if (serial.empty() || !std::filesystem::exists(file)) {
-    return nullptr;
-  }
-  auto map = std::make_shared<const SensorMap>(read_sensor_map(file));
-  return map->width == lens.width && map->height == lens.height ? map : nullptr;
 }
 
 /// Describes the outcome of a run, for the log.
@@ -188,9 +169,9 @@ Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& p
       speed_(rig.speed),
       retries_(rig.retries),
       sensor_off_after_(rig.sensor_off_after),
-      told_laser_(rig.laser),
       limits_(limits),
-      ports_(ports) {}
+      ports_(ports),
+      capture_(make_capture(rig_, ports.store.data(), ports.calibration)) {}
 
 void Worker::work() {
   open_turntable();  // so that the status shows it
@@ -235,18 +216,13 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
   }
 }
 
-/// Shows the sensor's next frame, or the camera's next picture with all lasers off.
 void Worker::show_next_frame(const std::stop_token& stop) {
-  if (rig_.laser() != nullptr) {
-    if (std::optional<TimedPicture> timed = rig_.camera().read(stop)) {
-      show_picture(std::move(timed->picture));
-    }
-  } else if (std::optional<TimedFrame> timed = rig_.sensor().read(stop)) {
-    show_frame(std::move(timed->frame));
+  if (std::optional<Capture::Seen> seen = capture_->read(stop)) {
+    std::visit([this](auto image) { show(std::move(image)); }, *std::move(seen));
   }
 }
 
-void Worker::show_frame(DepthFrame frame) {
+void Worker::show(DepthFrame frame) {
   DepthSensor& sensor = rig_.sensor();
   ports_.heartbeat.beat();
   set_sensor_ready(sensor.name());
@@ -254,7 +230,7 @@ void Worker::show_frame(DepthFrame frame) {
   ports_.board.set_camera_frame(std::move(frame), sensor.intrinsics());
 }
 
-void Worker::show_picture(Picture picture) {
+void Worker::show(Picture picture) {
   ports_.heartbeat.beat();
   set_sensor_ready(rig_.camera().name());
   introduce_sensor();
@@ -379,14 +355,10 @@ void Worker::run_until_it_ends(const std::stop_token& stop) {
 void Worker::attempt(const std::stop_token& stop) {
   try {
     rig_.set_object_pose(static_cast<int>(to_pose_index(ports_.store, job_)));
-    use_lens(first_scan());
-    use_pose();
-    use_optics(first_scan(), job_.settings);
+    capture_->use_stored(job_.settings, first_scan());
     if (job_.snapshots_done == 0) {
       expect_same_sensor();
-      if (rig_.laser() == nullptr) {
-        keep_sensor_map(ports_.store.data(), rig_.sensor().serial(), ports_.store.folder(job_.id));
-      }
+      capture_->keep_sensor_map(ports_.store.folder(job_.id));
     }
     job_.model =
         run_scan(job_.settings, limits_, ports_.store.folder(job_.id), rig_, stop, observer(stop));
@@ -403,8 +375,8 @@ ScanObserver Worker::observer(const std::stop_token& stop) {
   return {.on_progress = [this](Phase phase, int done) { show_progress(phase, done); },
           .on_turn = [this](double angle_deg) { save_platform_angle(angle_deg); },
           .on_slip = [this] { ++job_.times.slips; },
-          .on_frame = [this](const DepthFrame& frame) { show_frame(frame); },
-          .on_picture = [this](const Picture& picture) { show_picture(picture); },
+          .on_frame = [this](const DepthFrame& frame) { show(frame); },
+          .on_picture = [this](const Picture& picture) { show(picture); },
           .on_added =
               [this, stop, id = job_.id](const Reconstructor& reconstruction, int snapshots) {
                 if (MeshPreview preview = make_preview(id, reconstruction, snapshots, stop);
@@ -431,10 +403,11 @@ void Worker::show_progress(Phase phase, int snapshots_done) {
   time_left_->count(snapshots_done, now);
   job_.phase = phase;
   job_.snapshots_done = snapshots_done;
-  if (is_stop_done && snapshots_done == 1 && rig_.laser() != nullptr) {
+  if (is_stop_done && snapshots_done == 1) {
     const std::filesystem::path folder = ports_.store.folder(job_.id);
-    job_.builds.have_colours = has_colours(folder, read_scan(folder));
-    job_.builds.have_views = false;
+    const Scan scan = read_scan(folder);
+    job_.builds.have_colours = has_colours(folder, scan);
+    job_.builds.have_views = !scan.laser;
   }
   if (phase == Phase::rebuilding) {
     rebuild_started_ = now;
@@ -479,11 +452,9 @@ void Worker::keep_calibration(const ScanSolution& solution) {
   try {
     ports_.store.save(job_);
     if (solution.replaces_told) {
-      const PoseRecord record =
-          rig_.laser() == nullptr
-              ? to_record(report, PoseOrigin::scan, job_.settings.depth_scale)
-              : to_record(report, PoseOrigin::scan, rig_.camera().serial(), solution.solved.lasers);
-      keep_pose(record, report, OpticsOrigin::scan);
+      keep_pose(
+          capture_->to_record(report, PoseOrigin::scan, job_.settings, solution.solved.lasers),
+          report, OpticsOrigin::scan);
     }
   } catch (...) {
     log::warning("scanner", current_failure().detail);
@@ -495,7 +466,7 @@ void Worker::keep_calibration(const ScanSolution& solution) {
 /// in between it is dropped once the sensor is open. Nothing is kept of a scan that began with
 /// other optics than those in force, as one that was paused over a calibration.
 void Worker::keep_pose(PoseRecord pose, const CalibrationReport& report, OpticsOrigin origin) {
-  const std::string serial = rig_.laser() == nullptr ? rig_.sensor().serial() : "";
+  const std::string serial = capture_->serial();
   const bool are_new = report.optics_differ && !serial.empty();
   const auto kept = optics_record(ports_.store.data(), serial);
   if (kept ? !rig_.optics() || !are_alike(kept->optics.value, rig_.optics()->value)
@@ -732,33 +703,19 @@ void Worker::measure(CalibrationRun& run, const ScanSettings& settings,
             begin(phase);
           },
       .on_turn = [this](double angle_deg) { save_platform_angle(angle_deg); },
-      .on_frame = [this](const DepthFrame& frame) { show_frame(frame); }};
-  run.report = measure_turn(settings, stop, observer);
+      .on_frame = [this](const DepthFrame& frame) { show(frame); }};
+  capture_->use_stored(settings, {});
+  run.report = capture_->measure_turn(settings, limits_.threads, stop, observer);
   if (!run.report) {
     run.state = CalibrationRun::State::cancelled;
     return;
   }
   const TurnReport& report = *run.report;
   if (report.calibration.accepted) {
-    keep_pose(to_record(report, settings, rig_), report.calibration, OpticsOrigin::turn);
+    keep_pose(to_record(report, settings, *capture_), report.calibration, OpticsOrigin::turn);
   }
   run.state =
       report.calibration.accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
-}
-
-/// @return nullopt if stopped first
-std::optional<TurnReport> Worker::measure_turn(const ScanSettings& settings,
-                                               const std::stop_token& stop,
-                                               const ScanObserver& observer) {
-  if (rig_.laser() != nullptr) {
-    use_lens("");
-    use_pose();
-    return measure_laser_turn(settings, ports_.store.data(), limits_.threads, rig_, stop, observer);
-  }
-  use_optics("", settings);
-  const auto map =
-      find_sensor_map(ports_.store.data(), rig_.sensor().serial(), rig_.sensor().intrinsics());
-  return octurn::measure_turn(settings, map, limits_.threads, rig_, stop, observer);
 }
 
 /// Reads frames of a wall, and stores the sensor's map if it is accepted.
@@ -771,15 +728,15 @@ void Worker::measure_wall(CalibrationRun& run, const std::stop_token& stop) {
         ErrorCode::bad_settings, sensor.name() + ": reports no serial number",
         "A map belongs to one sensor. Make it of a recording with octurn calibrate --wall.");
   }
-  const auto show = [&](const DepthFrame& frame, int frames) {
+  const auto show_wall = [&](const DepthFrame& frame, int frames) {
     run.stop = frames;
     ports_.board.set_calibration_run(run);
-    show_frame(frame);
+    show(frame);
     ports_.heartbeat.suspend();
   };
   const std::filesystem::path data = ports_.store.data();
-  const std::optional<WallView> view =
-      look_at_wall(sensor, run.stops, next_wall(data, serial), rig_.sensor_on_for(), stop, show);
+  const std::optional<WallView> view = look_at_wall(sensor, run.stops, next_wall(data, serial),
+                                                    rig_.sensor_on_for(), stop, show_wall);
   if (!view) {
     run.state = CalibrationRun::State::cancelled;
     return;
@@ -799,17 +756,13 @@ void Worker::introduce_sensor() {
     return;
   }
   introduced_ = since;
-  const bool is_camera = rig_.laser() != nullptr;
-  KnownSensor known{.serial = is_camera ? rig_.camera().serial() : rig_.sensor().serial(),
-                    .since = since,
-                    .has_infrared = !is_camera && rig_.sensor().has_infrared()};
+  KnownSensor known{
+      .serial = capture_->serial(), .since = since, .has_infrared = capture_->has_infrared()};
   try {
-    if (!is_camera) {
-      ports_.calibration.drop_without_optics(known.serial);
-    }
+    ports_.calibration.drop_without_optics(known.serial);
     known.map = find_map_summary(ports_.store.data(), known.serial);
     known.optics = read_optics(ports_.store.data(), known.serial);
-    known.lens = is_camera ? octurn::find_lens(ports_.store.data(), known.serial) : std::nullopt;
+    known.lens = octurn::find_lens(ports_.store.data(), known.serial);
   } catch (...) {
     log::warning("calibration", current_failure().detail);
   }
@@ -820,7 +773,7 @@ void Worker::introduce_sensor() {
 void Worker::carry_out(LensCommand& command, const std::stop_source& stop) {
   carry_out({.kind = CalibrationRun::Kind::lens, .phase = CalibrationRun::Phase::looking},
             [&](CalibrationRun& run) {
-              if (told_laser_) {
+              if (rig_.laser() != nullptr) {
                 find_lens(run, stop.get_token());
               } else {
                 find_optics(run, command.square, stop.get_token());
@@ -894,7 +847,7 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
                 "Take pictures of a board, and use octurn calibrate --board.",
                 {{"no_serial", camera.name()}});
   }
-  const Intrinsics lens = told_laser_->lens;
+  const Intrinsics lens = rig_.laser()->lens;
   run.camera = camera.serial();
   const ShownBoard board(camera);
   BoardWatch watch(lens);
@@ -905,7 +858,7 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
     }
     expect_size_for_lens(timed->picture, lens, camera.name());
     watch.see(timed->picture);
-    show_picture(timed->picture);
+    show(timed->picture);
     report_look(run, watch.look());
   }
   if (is_board_put_away(run, stop)) {
@@ -917,59 +870,12 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
   run.state = run.lens->accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
 }
 
-/// Returns the id of the scan whose lens the running one uses: a resumed scan keeps the lens that
-/// it was begun with, and a scan of another pose uses that of the first scan. Empty for a first
-/// one.
-std::string Worker::first_scan() const {
-  return job_.snapshots_done > 0 ? job_.id : job_.pose_of ? job_.pose_of->scan : "";
-}
-
-/// Sets the lens of the rig's camera.
-/// @param begun  id of a scan whose lens is used if its camera is the same; empty: none
-void Worker::use_lens(const std::string& begun) {
-  if (!told_laser_) {
-    return;
-  }
-  const std::string serial = rig_.camera().serial();
-  CameraLens lens = lens_in_force(ports_.store.data(), serial, told_lens(*told_laser_));
-  if (!begun.empty()) {
-    const Scan scan = read_scan(ports_.store.folder(begun));
-    if (scan.laser && scan.sensor_serial == serial &&
-        scan.intrinsics.width == lens.intrinsics.width &&
-        scan.intrinsics.height == lens.intrinsics.height) {
-      lens = {.intrinsics = scan.intrinsics, .k1 = scan.laser->k1, .k2 = scan.laser->k2};
-    }
-  }
-  rig_.use_lens(lens);
-}
-
-/// Sets the optics of the rig's depth sensor, with the depth scale.
-/// @param begun  id of a scan whose optics are used, known or not: snapshots of one scan have one
-///               sensor; empty: those in force
-void Worker::use_optics(const std::string& begun, const ScanSettings& settings) {
-  if (rig_.laser() != nullptr) {
-    return;
-  }
-  if (!begun.empty()) {
-    rig_.use_optics(read_scan(ports_.store.folder(begun)).optics);
-    return;
-  }
-  const auto kept = optics_record(ports_.store.data(), rig_.sensor().serial());
-  rig_.use_optics(kept ? std::optional(scaled(kept->optics, settings.depth_scale)) : std::nullopt);
-}
-
-/// Sets the pose of the rig's camera and the planes of its lasers: those in force for this camera,
-/// else the settings'.
-void Worker::use_pose() {
-  if (!told_laser_) {
-    return;
-  }
-  const PoseRecord pose = ports_.calibration
-                              .records({.platform_from_sensor = told_laser_->platform_from_sensor},
-                                       rig_.camera().serial())
-                              .front();
-  rig_.use_pose(pose.platform_from_sensor, laser_camera(*told_laser_).lasers);
-  rig_.use_pose(pose.platform_from_sensor, pose.lasers);
+/// Returns the folder of the scan whose lens or optics the running one uses: a resumed scan keeps
+/// those that it was begun with, and a scan of another pose uses those of the first scan. Empty for
+/// a first one.
+std::filesystem::path Worker::first_scan() const {
+  const std::string id = job_.snapshots_done > 0 ? job_.id : job_.pose_of ? job_.pose_of->scan : "";
+  return id.empty() ? std::filesystem::path() : ports_.store.folder(id);
 }
 
 }  // namespace octurn

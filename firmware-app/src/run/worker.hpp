@@ -1,7 +1,9 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <stop_token>
@@ -9,7 +11,7 @@
 #include "calibration/calibration_store.hpp"
 #include "calibration/lens_files.hpp"
 #include "calibration/optics_files.hpp"
-#include "capture/calibration_turn.hpp"
+#include "capture/capture.hpp"
 #include "latest.hpp"
 #include "run/command_slot.hpp"
 #include "run/run_scan.hpp"
@@ -69,8 +71,8 @@ class Worker {
   void set_sensor_failed(const Failure& failure);
   void set_turntable_ready();
   void set_turntable_failed(const Failure& failure);
-  void show_frame(DepthFrame frame);
-  void show_picture(Picture picture);
+  void show(DepthFrame frame);
+  void show(Picture picture);
   void show_progress(Phase phase, int snapshots_done);
   void begin(Phase phase);
   void show_job();
@@ -78,18 +80,13 @@ class Worker {
   void keep_calibration(const ScanSolution& solution);
   void keep_pose(PoseRecord pose, const CalibrationReport& report, OpticsOrigin origin);
   void show_rebuilt(int snapshots);
-  std::optional<TurnReport> measure_turn(const ScanSettings& settings, const std::stop_token& stop,
-                                         const ScanObserver& observer);
   void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
   void measure_wall(CalibrationRun& run, const std::stop_token& stop);
   void find_lens(CalibrationRun& run, const std::stop_token& stop);
   void find_optics(CalibrationRun& run, double square, const std::stop_token& stop);
   void report_look(CalibrationRun& run, const BoardLook& look);
   bool is_board_put_away(CalibrationRun& run, const std::stop_token& stop) const;
-  std::string first_scan() const;
-  void use_lens(const std::string& begun);
-  void use_pose();
-  void use_optics(const std::string& begun, const ScanSettings& settings);
+  std::filesystem::path first_scan() const;
   void carry_out(CalibrationRun run, const std::function<void(CalibrationRun& run)>& measurement);
   void introduce_sensor();
   void close_device(const Failure& failure);
@@ -101,10 +98,10 @@ class Worker {
   double speed_;  // of a simulated rig, relative to real time
   Retries retries_;
   std::optional<std::chrono::seconds> sensor_off_after_;
-  std::optional<LaserSettings> told_laser_;  // from the settings; nullopt: a depth sensor
   Limits limits_;
   WorkerPorts ports_;
-  Job job_ = {};  // the scan that runs
+  std::unique_ptr<Capture> capture_;  // of `rig_`
+  Job job_ = {};                      // the scan that runs
   Clock::time_point job_started_ = {};
   std::optional<TimeLeft> time_left_ = {};            // of the running scan
   std::optional<Clock::time_point> gives_up_ = {};    // when retries of a failing stop end

@@ -49,7 +49,7 @@ class ScanLens : public ::testing::Test {
   }
 
   static CalibrationRun ended(Scanner& scanner) {
-    EXPECT_FALSE(scanner.wait_until_done(patience).busy());
+    EXPECT_FALSE(scanner.wait_until_done(5 * patience).busy());  // it renders and solves for long
     return **scanner.calibration_run();
   }
 

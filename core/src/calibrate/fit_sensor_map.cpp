@@ -399,10 +399,6 @@ void expect_one_sensor(std::span<const WallView> views) {
   }
 }
 
-}  // namespace
-
-namespace {
-
 std::optional<double> shortest_on_for(std::span<const WallView> views) {
   std::optional<double> shortest;
   for (const WallView& view : views) {

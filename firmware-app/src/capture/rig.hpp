@@ -58,6 +58,9 @@ struct RigOptions {
       octurn::open_sensor;
   std::function<Stepper::SetLine(const StepperSettings&)> open_lines = open_gpio_lines;
   std::function<CameraAndLasers(const LaserSettings&)> open_camera = open_camera_and_lasers;
+
+  SensorKind kind() const { return laser ? SensorKind::laser_line : SensorKind::depth; }
+  bool simulates_sensor() const { return laser ? !stepper : is_simulated_sensor(sensor_uri); }
 };
 
 /// The sensor, or a camera with lasers in its place, and the turntable. Used by one thread at a

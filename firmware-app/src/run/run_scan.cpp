@@ -51,6 +51,7 @@ class Run {
         preview_solves_(settings.snapshots) {}
 
   bool has_all_snapshots() const { return done() == settings_.snapshots; }
+  bool sees_depth() const { return !scan_.laser; }
   /// @return false if stopped first; so do `take_depth` and `take_lines`
   bool take_snapshots();
   std::vector<CalibrationFinding> calibrate();
@@ -328,7 +329,7 @@ std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits
   if (is_unfinished && !run.take_snapshots()) {
     return std::nullopt;
   }
-  const bool retakes = is_unfinished && rig.laser() == nullptr;
+  const bool retakes = is_unfinished && run.sees_depth();
   const auto retaken =
       retakes ? retake_first_stop(rig, settings, stop, observer) : std::optional<DepthFrame>();
   const Clock::time_point captured = Clock::now();

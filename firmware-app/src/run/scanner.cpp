@@ -99,10 +99,7 @@ void remove_import(const fs::path& folder) {
 
 Scanner::Scanner(RigOptions rig, const Limits& limits, ScanStore& store,
                  const std::optional<SlurmOptions>& slurm)
-    : store_(store),
-      limits_(limits),
-      calibration_(store.data(), rig.laser ? SensorKind::laser_line : SensorKind::depth),
-      board_(rig) {
+    : store_(store), limits_(limits), calibration_(store.data(), rig.kind()), board_(rig) {
   if (slurm) {
     slurm_.emplace(*slurm, store, limits);
   }

@@ -96,7 +96,7 @@ nlohmann::json to_json(const DeviceStatus& device) {
 
 StatusBoard::StatusBoard(const RigOptions& rig) {
   status_.update([&](Status& status) {
-    status.sensor.simulated = rig.laser ? !rig.stepper : is_simulated_sensor(rig.sensor_uri);
+    status.sensor.simulated = rig.simulates_sensor();
     status.turntable.simulated = !rig.stepper;
     status.turntable.name = status.turntable.simulated ? "simulated turntable" : "stepper";
   });

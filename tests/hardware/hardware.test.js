@@ -33,6 +33,14 @@ const raspberryPi = {screws: [58, 49], hole: 2.7};
 const foam = 2; // of the tape in the list of parts
 const printer = [200, 200, 180]; // what nearly every printer's bed takes
 
+test('the same parts make the same bytes: the facets are in order', () => {
+  for (const file of readdirSync(made).filter((name) => name.endsWith('.stl'))) {
+    const facets = readFileSync(join(made, file), 'utf8').match(/facet normal[^]*?endfacet/g) ?? [];
+    assert.ok(facets.length > 0, file);
+    assert.deepEqual(facets, [...facets].sort(), file);
+  }
+});
+
 for (const file of readdirSync(made).filter((name) => name.endsWith('.stl'))) {
   test(`${file} is closed, fits the bed, and slices`, () => {
     const stl = join(made, file);

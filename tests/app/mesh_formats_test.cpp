@@ -104,6 +104,16 @@ TEST_F(MeshFormats, ListEachCornerOnce) {
   EXPECT_EQ(table.vertices()[table.index(corners[1])], corners[1]);
 }
 
+TEST_F(MeshFormats, ListNoMoreCornersThanFitIntoTheMemoryOfARequest) {
+  std::vector<Facet> apart(1'000'000);  // three million corners
+  float x = 0;
+  for (Facet& facet : apart) {
+    facet.corners = {Vertex{++x, 0, 0}, Vertex{x, 1, 0}, Vertex{x, 0, 1}};
+  }
+  std::ofstream(file("Scan.stl"), std::ios::binary) << stl_text(apart);
+  EXPECT_EQ(code_thrown_by([&] { VertexTable{stl()}; }), "memory-limit");
+}
+
 TEST_F(MeshFormats, WriteThePlyOfAnStl) {
   write_ply(stl(), file("Scan.ply"));
   const std::string ply = content_of(file("Scan.ply"));

@@ -55,7 +55,7 @@ namespace {
 
 constexpr std::uint32_t empty = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t first_slots = 1024;             // a power of two, and doubled to grow
-constexpr std::uint64_t max_facets = 40'000'000;      // half a gigabyte of table
+constexpr std::size_t max_vertices = 2'750'000;       // 33 MB, and 17 MB of slots
 constexpr std::uint64_t mixer = 0x9e3779b97f4a7c15U;  // 2^64 / golden ratio, as Fibonacci hashing
 
 std::uint64_t hash(const Vertex& vertex) {
@@ -74,19 +74,21 @@ bool is_same(const Vertex& a, const Vertex& b) {
 }  // namespace
 
 VertexTable::VertexTable(const FacetFile& facets) : slots_(first_slots, empty) {
-  if (facets.count() > max_facets) {
-    throw Error(ErrorCode::memory_limit,
-                "the model has " + std::to_string(facets.count()) +
-                    " triangles, too many for a format that lists its corners",
-                "Download the STL, or build it with a larger leaf size.",
-                {{"triangles", static_cast<double>(facets.count())}});
-  }
+  vertices_.reserve(
+      std::min<std::uint64_t>(max_vertices + 3 * facets_in_block, 3 * facets.count()));
   facets.read([&](std::span<const Facet> block) {
     for (const Facet& facet : block) {
       const auto corners = facet.corners;  // a copy: a facet's members are not aligned
       for (const Vertex& corner : corners) {
         insert(corner);
       }
+    }
+    if (vertices_.size() > max_vertices) {
+      throw Error(ErrorCode::memory_limit,
+                  "the model has " + std::to_string(facets.count()) +
+                      " triangles, too many for a format that lists its corners",
+                  "Download the STL, or build it with a larger leaf size.",
+                  {{"triangles", static_cast<double>(facets.count())}});
     }
   });
 }

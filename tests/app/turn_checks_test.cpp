@@ -71,7 +71,7 @@ TEST(CheckTurn, BlamesNeitherGearNorPlayForLostSteps) {
   EXPECT_EQ(finding_of("turn-whole", turn).set, json::object());
   EXPECT_EQ(finding_of("turn-play", turn).set, json::object());
   const Finding back = finding_of("turn-return", turn).finding;
-  EXPECT_NE(back.advice.find("start_speed_deg_per_s"), std::string::npos) << back.advice;
+  EXPECT_NE(back.advice.find("lower its start speed"), std::string::npos) << back.advice;
 }
 
 TEST(CheckTurn, WithdrawsAnAdviceOnPlayThatCannotHelp) {

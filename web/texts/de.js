@@ -1025,7 +1025,7 @@ export const said = {
   'the distortion that was found is impossible: no lens bends a picture that much': 'die gefundene Verzeichnung ist unmöglich: kein Objektiv verbiegt ein Bild so sehr',
   'A printed board is for a Kinect v{}, or for a camera with lasers.': 'Ein gedrucktes Schachbrett ist für eine Kinect v{} oder für eine Kamera mit Lasern.',
   'Measure a known length instead.': 'Stattdessen eine bekannte Länge messen.',
-  'Take pictures of a board, and use octurn calibrate --board.': 'Bilder eines Schachbretts aufnehmen und octurn calibrate --board verwenden.',
+  'Take pictures of a board, and use octurn calibrate --board.': 'Eine Kamera verwenden, die eine Seriennummer hat.',
   'sensor: does not start its infrared stream': 'Sensor: beginnt nicht mit Infrarotbildern',
   'a scan runs with the lens that was in use when it began': 'ein Scan läuft mit dem Objektiv, das bei seinem Beginn galt',
   'Keep the new one when the scan has ended.': 'Das neue behalten, wenn der Scan beendet ist.',

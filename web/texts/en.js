@@ -7,6 +7,7 @@
  */
 export const said = {
   'kinect: none is plugged in': 'no Kinect is plugged in',
+  'Take pictures of a board, and use octurn calibrate --board.': 'Use a camera that has a serial number.',
   'End other programs, or lower memory_limit_mb in octurn.json.': 'End other programs, or lower Memory in the settings.',
   'Correct the turntable\'s lines in octurn.json; they are called GPIO{} to GPIO{}.': 'Correct the lines under Wiring in the settings; they are called GPIO{} to GPIO{}.',
   'End what uses them, or choose other lines in octurn.json and rewire.': 'End what uses them, or choose other lines under Wiring in the settings and rewire.',

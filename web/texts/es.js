@@ -1025,7 +1025,7 @@ export const said = {
   'the distortion that was found is impossible: no lens bends a picture that much': 'la distorsión encontrada es imposible: ninguna lente curva tanto una imagen',
   'A printed board is for a Kinect v{}, or for a camera with lasers.': 'Un tablero impreso es para una Kinect v{} o para una cámara con láseres.',
   'Measure a known length instead.': 'Mida en su lugar una longitud conocida.',
-  'Take pictures of a board, and use octurn calibrate --board.': 'Tome imágenes de un tablero y use octurn calibrate --board.',
+  'Take pictures of a board, and use octurn calibrate --board.': 'Use una cámara que tenga un número de serie.',
   'sensor: does not start its infrared stream': 'sensor: no empieza a dar imágenes infrarrojas',
   'a scan runs with the lens that was in use when it began': 'hay un escaneo en curso con la lente que estaba en vigor cuando empezó',
   'Keep the new one when the scan has ended.': 'Conserve la nueva cuando el escaneo haya terminado.',

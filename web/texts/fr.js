@@ -1025,7 +1025,7 @@ export const said = {
   'the distortion that was found is impossible: no lens bends a picture that much': 'la distorsion trouvée est impossible : aucun objectif ne courbe autant une image',
   'A printed board is for a Kinect v{}, or for a camera with lasers.': 'Un damier imprimé est pour une Kinect v{} ou pour une caméra avec lasers.',
   'Measure a known length instead.': 'Mesurez plutôt une longueur connue.',
-  'Take pictures of a board, and use octurn calibrate --board.': 'Prenez des images d’un damier et utilisez octurn calibrate --board.',
+  'Take pictures of a board, and use octurn calibrate --board.': 'Utilisez une caméra qui a un numéro de série.',
   'sensor: does not start its infrared stream': 'capteur : ne commence pas à donner des images infrarouges',
   'a scan runs with the lens that was in use when it began': 'une numérisation est en cours avec l’objectif en vigueur à son début',
   'Keep the new one when the scan has ended.': 'Gardez le nouveau quand la numérisation sera terminée.',

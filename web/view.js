@@ -1,7 +1,7 @@
 // Renders a screen (screen.js), except the large picture (stage.js) and the form's fields (form.js).
 
 import {tickWidth, ticks} from './scan/dial.js';
-import {element, list, part, setBadge, setText, show} from './base/dom.js';
+import {element, list, part, setBadge, setText, setVerbatim, show} from './base/dom.js';
 import {renderLibrary} from './library/library_view.js';
 import {text} from './base/texts.js';
 
@@ -102,7 +102,7 @@ const showFacts = (id, facts) => list(element(id), facts, ({label}) => label, 'f
 
 /** @param {NonNullable<Screen['details']>} details */
 function showDetails({name, trouble, verdict, size, facts, canResume, canEnd, download, formats, unbuilt}) {
-  setText(element('details-name'), name);
+  setVerbatim(element('details-name'), name);
   show(element('trouble'), trouble !== null);
   if (trouble) {
     element('trouble').dataset.tone = trouble.tone;

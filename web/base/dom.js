@@ -5,14 +5,16 @@ import {typeset} from './texts.js';
 /** @param {string} id @returns {any} the element with that id */
 export const element = (id) => document.getElementById(id);
 
-/** Sets text only if it differs, so that selections stay and screen readers announce only changes.
- * @param {Element} target @param {string} text */
-export function setText(target, text) {
-  const words = typeset(text);
+/** Shows what somebody wrote, such as a name, as it is. It is set only if it differs, so that selections stay and screen
+ * readers announce only changes. @param {Element} target @param {string} words */
+export function setVerbatim(target, words) {
   if (target.textContent !== words) {
     target.textContent = words;
   }
 }
+
+/** The same for a text of the page or of the scanner, which is typeset. @param {Element} target @param {string} text */
+export const setText = (target, text) => setVerbatim(target, typeset(text));
 
 /** @param {HTMLElement} target @param {{tone?: string, text: string}} badge */
 export function setBadge(target, {tone, text}) {

@@ -1,6 +1,6 @@
 // Renders the library of stored scans.
 
-import {element, list, part, setBadge, setText, show} from '../base/dom.js';
+import {element, list, part, setBadge, setText, setVerbatim, show} from '../base/dom.js';
 import {text} from '../base/texts.js';
 
 /** @typedef {ReturnType<import('../screen.js').screenOf>} Screen */
@@ -40,7 +40,7 @@ function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
     part(choice, 'input').checked = row.isChosen;
     part(choice, 'input').setAttribute('aria-label', text('library.choose', {name: row.name}));
     const name = part(item, '.scan-name');
-    setText(name, row.name);
+    setVerbatim(name, row.name);
     name.href = `#${row.id}`;
     name.toggleAttribute('aria-current', row.isCurrent);
     setBadge(part(item, '.badge'), row.badge);

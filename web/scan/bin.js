@@ -1,7 +1,7 @@
 // The bin below the list of scans: deleted scans, which can be restored.
 
 import * as requests from '../api/api_bin.js';
-import {element, list, part, setText, show} from '../base/dom.js';
+import {element, list, part, setText, setVerbatim, show} from '../base/dom.js';
 import * as format from '../base/format.js';
 import {text} from '../base/texts.js';
 
@@ -25,7 +25,7 @@ function render(scans) {
   show(element('bin'), scans.length > 0);
   setText(element('bin-title'), text('bin.title', {count: scans.length}));
   list(element('bin-rows'), scans.map((scan) => rowOf(scan, new Date())), ({id}) => id, 'bin-row', (item, row) => {
-    setText(part(item, '.scan-name'), row.name);
+    setVerbatim(part(item, '.scan-name'), row.name);
     setText(part(item, '.scan-about'), row.about);
     part(item, 'button').setAttribute('aria-label', text('library.action', {action: text('bin.restore'), name: row.name}));
   });

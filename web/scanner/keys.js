@@ -1,7 +1,7 @@
 // "Keys for programs" in the settings: keys are created, shown once, and revoked.
 
 import {Problem, json, sending, withoutAnswer} from '../api/api.js';
-import {element, list, part, setText, show} from '../base/dom.js';
+import {element, list, part, setText, setVerbatim, show} from '../base/dom.js';
 import {sentence, when} from '../base/format.js';
 import {text} from '../base/texts.js';
 
@@ -23,7 +23,7 @@ function complain(error) {
 function render() {
   list(element('key-rows'), keys, ({id}) => id, 'key-row', (row, key) => {
     const name = key.name || key.id;
-    setText(part(row, 'strong'), name);
+    setVerbatim(part(row, 'strong'), name);
     setText(part(row, 'p'), aboutKey(key));
     part(row, 'button').setAttribute('aria-label', text('keys.revoke-of', {name}));
   });

@@ -1,7 +1,7 @@
 // "Printers" and "Notify other programs" in the settings: the receivers of models, and of webhooks.
 
 import {Problem, json, sending, withoutAnswer} from '../api/api.js';
-import {element, list, part, setText, show} from '../base/dom.js';
+import {element, list, part, setText, setVerbatim, show} from '../base/dom.js';
 import {fetchFragment} from '../base/fragment.js';
 import {sentence} from '../base/format.js';
 import {text} from '../base/texts.js';
@@ -46,7 +46,7 @@ async function attempt(place, action) {
 async function showPrinters() {
   const {printers} = await json('printers');
   list(element('printer-rows'), printers, ({id}) => id, 'outgoing-row', (row, printer) => {
-    setText(part(row, 'strong'), printer.name);
+    setVerbatim(part(row, 'strong'), printer.name);
     setText(part(row, 'p'), aboutPrinter(printer));
     show(part(row, '[data-do=test]'), false);
     part(row, '[data-do=remove]').setAttribute('aria-label', text('outgoing.remove-of', {name: printer.name}));
@@ -57,7 +57,7 @@ async function showPrinters() {
 async function showWebhooks() {
   const {webhooks} = await json('webhooks');
   list(element('webhook-rows'), webhooks, ({id}) => id, 'outgoing-row', (row, webhook) => {
-    setText(part(row, 'strong'), webhook.address);
+    setVerbatim(part(row, 'strong'), webhook.address);
     setText(part(row, 'p'), aboutWebhook(webhook));
     part(row, '[data-do=test]').setAttribute('aria-label', text('outgoing.test-of', {name: webhook.address}));
     part(row, '[data-do=remove]').setAttribute('aria-label', text('outgoing.remove-of', {name: webhook.address}));

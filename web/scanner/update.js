@@ -1,7 +1,7 @@
 // "Update": uploads a file to the scanner, and shows the update's progress across the restart.
 
 import * as api from '../api/api.js';
-import {element, part, setText, show} from '../base/dom.js';
+import {element, part, setText, setVerbatim, show} from '../base/dom.js';
 import {bytes, sentence} from '../base/format.js';
 import {forget, note, noted} from '../base/storage.js';
 import {text} from '../base/texts.js';
@@ -103,7 +103,7 @@ function showChoice() {
   show(element('update-install'), file !== undefined);
   show(element('update-older'), file !== undefined);
   setText(part(element('update-pick'), 'span'), text(file ? 'update.pick-another' : 'update.pick'));
-  setText(part(element('update-chosen'), 'strong'), file?.name ?? '');
+  setVerbatim(part(element('update-chosen'), 'strong'), file?.name ?? '');
   setText(part(element('update-chosen'), 'span'), file ? complaint || bytes(file.size) : '');
   element('update-install').setAttribute('aria-disabled', String(complaint !== '' || state.isScanning || state.isAway));
 }

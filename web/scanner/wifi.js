@@ -2,7 +2,7 @@
 
 import * as api from '../api/api.js';
 import {codes} from './countries.js';
-import {element, list, part, setText, show} from '../base/dom.js';
+import {element, list, part, setText, setVerbatim, show} from '../base/dom.js';
 import {sentence} from '../base/format.js';
 import {locale, text} from '../base/texts.js';
 import {codePath, wifiCodeText} from './wifi_code.js';
@@ -98,7 +98,7 @@ const farewell = () => `${text('wifi.farewell', {there: text('wifi.there', {name
 function showNetworks() {
   list(element('networks'), networks, ({name}) => name, 'network', (item, {name, signal_dbm, secured}) => {
     part(item, 'input').value = name;
-    setText(part(item, '.network-name'), name);
+    setVerbatim(part(item, '.network-name'), name);
     part(item, '.network-signal use').setAttribute('href', `icons/symbols.svg#wifi-${barsOf(signal_dbm)}`);
     show(part(item, '.network-lock'), secured);
     setText(part(item, '.unseen'), text(secured ? 'wifi.secured' : 'wifi.open', {bars: barsOf(signal_dbm)}));

@@ -172,6 +172,8 @@ test('no sentence on the page asks for a shell or a file of settings', () => {
   for (const {said} of files.values()) {
     assert.deepEqual(Object.values(said).filter((words) => shell.test(words)), []);
   }
+  const en = files.get('en')?.said ?? {};
+  assert.deepEqual(Object.keys(files.get('de')?.said ?? {}).filter((key) => shell.test(key) && !Object.hasOwn(en, key)), []);
   assert.equal(translated('End other programs, or lower memory_limit_mb in octurn.json.'),
       'End other programs, or lower Memory in the settings.');
   for (const before of ['', 'sensor: ', 'no sensor was found: ']) {

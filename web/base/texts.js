@@ -96,7 +96,8 @@ function translatedParts(sentence) {
     return whole;
   }
   for (const {0: separator, index = 0} of sentence.matchAll(/, |; /g)) {
-    const first = translatedWhole(sentence.slice(0, index));
+    const head = sentence.slice(0, index);
+    const first = /[a-z]{2}/i.test(head) ? translatedWhole(head) : head;
     const others = first === null ? null : translatedParts(sentence.slice(index + separator.length));
     if (others !== null) {
       return first + separator + others;

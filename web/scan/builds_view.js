@@ -24,6 +24,7 @@ let isBegun = false;
 let last = null;
 let filledFor = '';  // the scan
 let filledWith = '';  // the settings in the form, of the model in view
+let isEdited = false;  // whether somebody has changed them since
 
 const form = () => /** @type {HTMLFormElement} */ (element('build-form'));
 const clipFields = () => /** @type {HTMLInputElement[]} */ ([...form().querySelectorAll('[data-clip]')])
@@ -130,10 +131,10 @@ export function renderBuilds(builds) {
     element('build-again').open = false;
   }
   const settings = JSON.stringify(builds.settings);
-  if (filledFor !== builds.scan || filledWith !== settings) {
+  if (filledFor !== builds.scan || filledWith !== settings && !isEdited) {
     fill(builds.settings);
+    [filledFor, filledWith, isEdited] = [builds.scan, settings, false];
   }
-  [filledFor, filledWith] = [builds.scan, settings];
   showRows(builds);
   showGoing(builds);
   element('build-start').setAttribute('aria-disabled', String(builds.isBusy));
@@ -141,7 +142,10 @@ export function renderBuilds(builds) {
 
 /** @param {Actions} actions */
 function listen(actions) {
-  form().addEventListener('input', explainFields);
+  form().addEventListener('input', () => {
+    isEdited = true;
+    explainFields();
+  });
   form().addEventListener('submit', (event) => {
     event.preventDefault();
     if (!last?.isBusy) {

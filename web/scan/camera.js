@@ -107,7 +107,7 @@ function troubleText(error) {
   const {detail, title, hint} = error instanceof api.Problem ? error :
     new api.Problem('picture', text('problem.picture'));
   const told = element('panel').innerText;
-  return [detail || title, hint].map(sentence).filter((words) => !told.includes(typeset(words))).join(' ');
+  return [detail || title, hint].map(sentence).filter((words) => !told.includes(typeset(words))).join(' ') || text('stage.none');
 }
 
 async function showPicture() {

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "support/daemon.hpp"
+#include "support/patience.hpp"
 #include "support/program.hpp"
 #include "support/temporary_folder.hpp"
 #include "version.hpp"
@@ -88,7 +89,9 @@ void wait_until_it_takes_signals(const Program& program) {
     const std::string text = content_of(status);
     return std::stoull(text.substr(text.find("SigBlk:") + 7), nullptr, 16);
   };
+  const auto deadline = std::chrono::steady_clock::now() + patience;
   while ((blocked() >> (SIGINT - 1)) % 2 == 0) {
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline);
     std::this_thread::yield();
   }
 }

@@ -288,7 +288,7 @@ TEST(HttpServer, RefusesControlCharactersOfATarget) {
     return request(server.port(), "GET", target).status;
   };
   for (const char* const target : {"/status%00", "/status%00.png", "/%00", "/a%0Ab", "/a%0D%0Ab",
-                                   "/a%1f", "/a%7F", "/a?leaf=1%00.png"}) {
+                                   "/a%1f", "/a%7F", "/a?leaf=1%00.png", "/a/%2e%2e", "/%2E/a"}) {
     EXPECT_EQ(status(target), 400) << target;
   }
   for (const char* const target : {"/gr%C3%BCn", "/a%2500", "/a%", "/a%0", "/a%20?b=%0A"}) {

@@ -8,7 +8,8 @@ namespace octurn {
 
 /// Slows down the guessing of passwords: an address has ten wrong guesses at once, and then one in
 /// ten seconds. All addresses together have a hundred, and then one a second; those that knew the
-/// password before are not among them, so that others' guesses lock none of them out.
+/// password before are not among them, so that guesses from other addresses lock none of
+/// them out.
 ///
 /// Not thread-safe. The time is a parameter, so that tests need no clock.
 class GuessLimit {

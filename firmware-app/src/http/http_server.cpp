@@ -509,7 +509,12 @@ void Exchange::expect_clear_length() const {
 
 void Exchange::expect_clear_target(const std::string& path) const {
   const char* const query = mg_get_request_info(&connection_)->query_string;
-  const auto is_control = [](char c) { return (c >= 0 && c < ' ') || c == '\x7f'; };
+  const auto is_control = [](char c) { return static_cast<unsigned char>(c) < ' ' || c == '\x7f'; };
+  const std::string whole = path + "/";
+  if (whole.find("/../") != std::string::npos || whole.find("/./") != std::string::npos) {
+    throw Error(ErrorCode::bad_request, "a part of the address is . or ..",
+                "Ask for a path, such as /api/v1/status.");
+  }
   if (std::ranges::any_of(path, is_control) ||
       (query != nullptr && std::string_view(query).find("%00") != std::string_view::npos)) {
     throw Error(ErrorCode::bad_request, "the address contains a control character",

@@ -27,8 +27,8 @@ struct LoginAttempt {
 /// one request with its method and target, once, and for some minutes after its challenge, so that
 /// an overheard proof is useless. Wrong guesses are slowed down, but not those of a session that
 /// has proved the password: a client stays in its session by the nonces that answer its proofs.
-/// Whoever overhears one can test guesses without the server, so limiting these would only let
-/// others lock the session out.
+/// Whoever overhears its proofs can test guesses without the server, so limiting these would only
+/// let others lock the session out.
 ///
 /// Thread-safe. The time is a parameter, so that tests need no clock.
 class Login {

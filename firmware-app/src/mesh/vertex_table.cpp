@@ -55,7 +55,7 @@ namespace {
 
 constexpr std::uint32_t empty = std::numeric_limits<std::uint32_t>::max();
 constexpr std::size_t first_slots = 1024;             // a power of two, and doubled to grow
-constexpr std::size_t max_vertices = 2'750'000;       // 33 MB, and 17 MB of slots
+constexpr std::size_t max_vertices = 2'300'000;       // 28 MB, and 17 MB of slots
 constexpr std::uint64_t mixer = 0x9e3779b97f4a7c15U;  // 2^64 / golden ratio, as Fibonacci hashing
 
 std::uint64_t hash(const Vertex& vertex) {

@@ -54,6 +54,19 @@ TEST_F(OpticsFiles, RememberTenBeforeThoseInForce) {
   EXPECT_EQ(kept.back().optics.value.fx, 584);
 }
 
+TEST_F(OpticsFiles, RememberABoardHoweverManyFollow) {
+  OpticsRecord by_board = record_of(590);
+  by_board.origin = OpticsOrigin::board;
+  keep_optics(data_.path(), "A", by_board);
+  for (int i = 0; i < 15; ++i) {
+    keep_optics(data_.path(), "A", record_of(580 + i));
+  }
+  const auto kept = read_optics(data_.path(), "A");
+  ASSERT_EQ(kept.size(), max_optics_history + 1);
+  EXPECT_EQ(kept.back().origin, OpticsOrigin::board);
+  EXPECT_EQ(kept[max_optics_history - 1].optics.value.fx, 585);
+}
+
 TEST_F(OpticsFiles, AreTakenBackOneAfterTheOther) {
   keep_optics(data_.path(), "A", record_of(581));
   keep_optics(data_.path(), "A", record_of(582));

@@ -44,10 +44,14 @@ std::vector<OpticsRecord> optics_records_from(JsonObject& root) {
   return records;
 }
 
+/// Writes the newest records. The newest one by a board is among them, however many follow it.
 /// @param records  newest first
 void write_optics(const fs::path& data, std::string_view serial,
                   std::vector<OpticsRecord> records) {
-  records.resize(std::min(records.size(), max_optics_history + 1));
+  while (records.size() > max_optics_history + 1) {
+    const auto board = std::ranges::find(records, OpticsOrigin::board, &OpticsRecord::origin);
+    records.erase(records.end() - (records.end() - 1 == board ? 2 : 1));
+  }
   json list = json::array();
   for (const OpticsRecord& record : records) {
     list.push_back(to_json(record));

@@ -79,6 +79,10 @@ TEST_F(CalibrateBoardCommand, SaysWhyALensIsNotKnown) {
   EXPECT_NE(run(2, {"calibrate", "--board", some.string(), "--square-mm", "14.9"})
                 .find("does not depend on the squares' side"),
             std::string::npos);
+  EXPECT_NE(run(2, {"calibrate", "--board", "--simulate-laser", "--square-mm", "14.9", "--data",
+                    folder_.path().string()})
+                .find("does not depend on the squares' side"),
+            std::string::npos);
   put(some / "120.png", "no picture");
   EXPECT_NE(run(1, {"calibrate", "--board", some.string()}).find("120.png"), std::string::npos);
   EXPECT_NE(run(1, {"calibrate", "--board", (folder_.path() / "none").string()}).find("no PNG"),

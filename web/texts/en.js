@@ -396,6 +396,7 @@ export const texts = {
   'refusal.sensor-other.camera.height_px.told_height_px.told_width_px.width_px': '{camera}: its pictures have {width_px} × {height_px} pixels, and the settings say {told_width_px} × {told_height_px}.',
   'refusal.sensor-other.first_pose_with': 'The first side was scanned with another sensor: {first_pose_with}.',
   'refusal.sensor-other.no_infrared': '{no_infrared} shows no infrared pictures.',
+  'refusal.sensor-other.camera_no_serial': '{camera_no_serial} reports no serial number, under which its lens could be kept.',
   'refusal.sensor-other.no_serial': '{no_serial} reports no serial number, under which its optics could be kept.',
   'refusal.sensor-silent.lost_share.silent_ms': 'No frame of the sensor was usable for {silent_ms}: {lost_share} of its packets were lost on USB.',
   'refusal.sensor-silent.silent_ms': 'The sensor has sent no frame for {silent_ms}.',

@@ -20,8 +20,6 @@ namespace {
 constexpr std::size_t max_image_bytes = 256U
                                         << 20U;  // twice an uncompressed image of max_image_side
 
-constexpr double max_on_for = 1e9;  // seconds: 30 years
-
 bool is_control(char character) { return static_cast<unsigned char>(character) < ' '; }
 
 /// Optics of earlier scans have no sigmas: they are read as 0.

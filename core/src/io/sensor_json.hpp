@@ -13,6 +13,9 @@
 
 namespace octurn {
 
+/// Bound of `on_for_s`, for which a sensor had been on: 30 years, in seconds.
+inline constexpr double max_on_for = 1e9;
+
 /// The key "sensor" of scan.json and wall.json.
 struct SensorJson {
   std::string name = {};

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "io/png_file.hpp"
+#include "io/sensor_json.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/optics_json.hpp"
@@ -75,7 +76,7 @@ SensorMap from_json(const json& document) {
   if (const auto optics = keys.value("optics")) {
     map.optics = optics_from(*optics);
   }
-  map.on_for = keys.number("on_for_s", 0, std::numeric_limits<double>::max());
+  map.on_for = keys.number("on_for_s", 0, max_on_for);
   const JsonValue depths = keys.at("inverse_depths");
   const std::vector<JsonValue> values = depths.elements();
   if (values.empty() || values.size() > 2) {

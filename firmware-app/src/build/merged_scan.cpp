@@ -281,6 +281,7 @@ Scan gather(const fs::path& folder, const std::vector<StoredTurn>& turns,
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const Scan& scan = turns[i].scan;
     merged.scale_sigma = std::max(merged.scale_sigma, scan.scale_sigma);
+    merged.sensor_on_for = std::min(merged.sensor_on_for, scan.sensor_on_for);  // nullopt: unknown
     merged.poses.push_back({.object_from_platform = registration.poses[i].object_from_platform,
                             .platform_from_sensor = scan.platform_from_sensor,
                             .solved = solved_in(merged, scan),

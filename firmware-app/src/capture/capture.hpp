@@ -21,7 +21,7 @@
 namespace octurn {
 
 /// What the kind of a rig's sensor decides, while the rig is used and calibrated. Used by the
-/// thread that uses the rig. All functions open the sensor, or the camera, if it is closed, and
+/// thread that uses the rig. Functions may open the sensor, or the camera, if it is closed, and
 /// throw "sensor-missing" or "sensor-failed" if that fails.
 class Capture {
  public:

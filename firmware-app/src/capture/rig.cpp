@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <utility>
 
 #include "capture/plan.hpp"
@@ -100,10 +101,12 @@ Lasers& Rig::lasers() {
 
 std::optional<double> Rig::sensor_on_for() const {
   const auto since = sensor_since();
-  return since ? std::optional(std::floor(
-                     std::chrono::duration<double>(std::chrono::steady_clock::now() - *since)
-                         .count()))
-               : std::nullopt;
+  const bool is_recording = std::filesystem::exists(options_.sensor_uri);
+  return since && !is_recording
+             ? std::optional(std::floor(
+                   std::chrono::duration<double>(std::chrono::steady_clock::now() - *since)
+                       .count()))
+             : std::nullopt;
 }
 
 double Rig::take_lost_share() {

@@ -303,9 +303,21 @@ void show_advice(ProgressBar& bar, const CalibrationRun& run) {
   }
 }
 
+/// Only a Kinect's distances are measured by the board's squares. @throws Error "bad-settings"
+void expect_no_square(const CalibrateBoardArguments& arguments) {
+  if (arguments.square_mm) {
+    throw Error(ErrorCode::bad_settings,
+                "--square-mm: the lens that pictures show does not depend on the squares' side",
+                "Leave --square-mm out, or leave out the folder, to measure the rig's Kinect.");
+  }
+}
+
 CalibrationRun run_of_rig(const CalibrateBoardArguments& arguments) {
   const Config config = make_config(arguments.config);
   const RigOptions rig = rig_options(arguments.rig, config);
+  if (rig.kind() == SensorKind::laser_line) {
+    expect_no_square(arguments);
+  }
   load_sensor_drivers();  // changes the working directory: before the first thread
   const SignalStop signal;
   ScanStore store(config.data);
@@ -339,11 +351,7 @@ bool calibrate_board(const CalibrateBoardArguments& arguments) {
     write_lens_report(*run.lens, run.optics, arguments);
     return run.lens->accepted;
   }
-  if (arguments.square_mm) {
-    throw Error(ErrorCode::bad_settings,
-                "--square-mm: the lens that pictures show does not depend on the squares' side",
-                "Leave --square-mm out, or leave out the folder, to measure the rig's Kinect.");
-  }
+  expect_no_square(arguments);
   const LensReport report = report_from(arguments.folder);
   if (report.accepted && arguments.keep && !arguments.keep->empty()) {
     keep_lens(make_config(arguments.config).data, *arguments.keep, report);

@@ -638,8 +638,8 @@ void Scanner::keep_lens(const ScanSettings& configured) {
   const std::lock_guard lock(scans_);
   expect_solved_lens();
   if (slot_.has_scan()) {
-    throw Error(ErrorCode::busy, "a scan runs with the lens that was in use when it began",
-                "Keep the new one when the scan has ended.");
+    throw Error(ErrorCode::busy, "a scan or a measurement uses the lens with which it began",
+                "Keep the new one when that has ended.");
   }
   const std::string& camera = solved_lens_->camera;
   if (solved_lens_->optics) {

@@ -184,7 +184,7 @@ class Scanner {
 
   /// Stores the lens that was solved last, or drops it. Both clear `calibration_run`.
   /// @param configured  the settings whose pose and depth scale are in force if no other is
-  /// @throws Error "not-found"  if no lens was solved; "busy"  if it is kept while a scan runs
+  /// @throws Error "not-found"  if no lens was solved; "busy"  if a scan or a measurement runs
   void keep_lens(const ScanSettings& configured);
   void discard_lens();
 

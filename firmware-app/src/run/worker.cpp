@@ -845,7 +845,7 @@ void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
     throw Error(ErrorCode::sensor_other,
                 camera.name() + ": reports no serial number, under which its lens could be kept",
                 "Take pictures of a board, and use octurn calibrate --board.",
-                {{"no_serial", camera.name()}});
+                {{"camera_no_serial", camera.name()}});
   }
   const Intrinsics lens = rig_.laser()->lens;
   run.camera = camera.serial();

@@ -157,6 +157,7 @@ function listen(actions) {
     const what = event.target.closest('[data-do]')?.dataset.do;
     const number = Number(event.target.closest('.build').dataset.key);
     if (what === 'show' || what === 'choose' || what === 'remove') {
+      isEdited = false;  // the form follows the model that this brings into view
       actions[what](number);
     }
   });

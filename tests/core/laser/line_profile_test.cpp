@@ -10,7 +10,8 @@
 namespace octurn {
 namespace {
 
-const Intrinsics lens{.width = 200, .height = 150, .fx = 330, .fy = 320, .cx = 99.5, .cy = 70};
+const Intrinsics narrow_lens{
+    .width = 200, .height = 150, .fx = 330, .fy = 320, .cx = 99.5, .cy = 70};
 
 TEST(RadialDistortion, IsTakenOut) {
   for (const RadialDistortion bent :
@@ -36,7 +37,8 @@ TEST(LineProfile, HasTheRaysOfWhatTheCameraSees) {
   std::vector<LineSample> samples;
   std::vector<Eigen::Vector3d> truth;
   for (int row = 10; row < 140; row += 7) {
-    // Bisection for the point of a straight line in the laser's plane that the lens shows on `row`.
+    // Bisection for the point of a straight line in the laser's plane that the narrow_lens shows on
+    // `row`.
     const Eigen::Vector3d along = laser.normal.cross(Eigen::Vector3d(1, 0, 0)).normalized();
     const Eigen::Vector3d foot =
         laser.normal * laser.distance + Eigen::Vector3d(0.59, 0, 0.8) * 0.2;
@@ -45,7 +47,8 @@ TEST(LineProfile, HasTheRaysOfWhatTheCameraSees) {
       const Eigen::Vector2d ideal = p.head<2>() / p.z();
       const double square = ideal.squaredNorm();
       const Eigen::Vector2d bent = ideal * (1 + camera.k1 * square + camera.k2 * square * square);
-      return {bent.x() * lens.fx + lens.cx, bent.y() * lens.fy + lens.cy};
+      return {bent.x() * narrow_lens.fx + narrow_lens.cx,
+              bent.y() * narrow_lens.fy + narrow_lens.cy};
     };
     double low = -0.2;
     double high = 0.2;
@@ -58,7 +61,7 @@ TEST(LineProfile, HasTheRaysOfWhatTheCameraSees) {
     truth.push_back(foot + along * low);
   }
 
-  const LineProfile profile = to_profile(samples, lens, camera);
+  const LineProfile profile = to_profile(samples, narrow_lens, camera);
 
   ASSERT_EQ(profile.rays.size(), samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) {

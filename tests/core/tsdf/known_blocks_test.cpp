@@ -8,13 +8,13 @@
 namespace octurn {
 namespace {
 
-constexpr int side = 60;       // of the grid, blocks
+constexpr int side = 60;       // of the block_grid, blocks
 constexpr double radius = 16;  // of the observed half of a sphere, blocks
 constexpr int middle = side / 2;
 
-const VoxelGrid grid(0.256, 8, {.min = {-0.1, -0.1, 0}, .max = {0.1, 0.1, 0.2}}, 0.003);
+const VoxelGrid block_grid(0.256, 8, {.min = {-0.1, -0.1, 0}, .max = {0.1, 0.1, 0.2}}, 0.003);
 
-double block_side() { return grid.voxel_side() * grid.block_voxels(); }
+double block_side() { return block_grid.voxel_side() * block_grid.block_voxels(); }
 
 /// Distance of a block from the sphere's middle, blocks.
 double distance(int x, int y, int z) { return std::hypot(x - middle, y - middle, z - middle); }
@@ -49,7 +49,7 @@ TEST(LimitBulges, MakesFreeWhatLiesOutsideTheHullOfWhatWasObserved) {
   const KnownBlocks before = half_a_sphere();
   KnownBlocks after = before;
   const double reach = 3;  // blocks
-  limit_bulges(after, grid, reach * block_side());
+  limit_bulges(after, block_grid, reach * block_side());
 
   int freed = 0;
   for_each(before, [&](int x, int y, int z, std::size_t index) {
@@ -71,14 +71,14 @@ TEST(LimitBulges, MakesFreeWhatLiesOutsideTheHullOfWhatWasObserved) {
 TEST(LimitBulges, IsNotMisledByAStrayReading) {
   KnownBlocks blocks = half_a_sphere();
   blocks.distances.known[blocks.distances.index(side - 2, middle, middle)] = 1;
-  limit_bulges(blocks, grid, block_side());
+  limit_bulges(blocks, block_grid, block_side());
   EXPECT_NE(blocks.distances.known[blocks.distances.index(side - 4, middle, middle)], 0);
 }
 
 TEST(LimitBulges, LeavesWhatIsUnknownWhereNothingWasObserved) {
   KnownBlocks blocks = half_a_sphere();
   std::ranges::fill(blocks.distances.known, 0);
-  limit_bulges(blocks, grid, block_side());
+  limit_bulges(blocks, block_grid, block_side());
   EXPECT_TRUE(std::ranges::all_of(blocks.distances.known, [](char known) { return known == 0; }));
 }
 

@@ -43,6 +43,16 @@ read_line() {
   value=$trimmed
   trim "${line%%=*}"
   case $trimmed in
+    name | wifi_country | time_zone | rig | turntable.* | scan.* | laser.* | sensor | memory_limit_mb | threads)
+      case $value in
+        *=* | *password*) # as of two lines that damage made one; what would be repeated may be a secret
+          "$1" "line $number has two settings: each needs a line of its own"
+          return
+          ;;
+      esac
+      ;;
+  esac
+  case $trimmed in
     name) name=$value ;;
     page_password) page_password=$value ;;
     wifi_name) wifi_name=$value ;;

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {setTimeout as sleep} from 'node:timers/promises';
 
-import {emptyPage, openBrowser} from './browser.js';
+import {emptyPage, openBrowser, picture} from './browser.js';
 import {configWith} from './password.js';
 import {startScanner} from './scanner.js';
 
@@ -75,6 +75,7 @@ async function getsInWhileAnotherGuesses(t, browser, scanner, page, password) {
   const visitor = await visit(browser, scanner.url, password);
   if (visitor.status === 429) { // else it was lucky at once
     assert.match(await visitor.page.textContent('p[lang=en]'), /^Please wait: somebody is guessing the password/);
+    await picture(visitor.page, 'guessed');
   }
   await visitor.page.getByRole('button', {name: 'Start scan'}).waitFor();
   await visitor.page.locator('[data-panel=waiting]').waitFor({state: 'hidden'});

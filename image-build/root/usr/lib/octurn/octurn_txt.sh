@@ -42,14 +42,12 @@ read_line() {
   trim "${trimmed#*=}"
   value=$trimmed
   trim "${line%%=*}"
-  case $trimmed in
-    name | wifi_country | time_zone | rig | turntable.* | scan.* | laser.* | sensor | memory_limit_mb | threads)
-      case $value in
-        *=* | *password*) # as of two lines that damage made one; what would be repeated may be a secret
-          "$1" "line $number has two settings: each needs a line of its own"
-          return
-          ;;
-      esac
+  case $trimmed=$value in
+    wifi_password=* | page_password=* | ssh_key=*) ;;
+    *=*_password* | name=*=* | wifi_country=*=* | time_zone=*=* | rig=*=* | turntable.*=*=* | scan.*=*=* | laser.*=*=*)
+      # as of two lines that damage made one; what would be repeated may be a secret
+      "$1" "line $number has two settings: each needs a line of its own"
+      return
       ;;
   esac
   case $trimmed in

@@ -168,8 +168,9 @@ std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
   }
   if (session.empty() || current - period_of_nonce(proof->nonce) > 1 ||
       !is_first_use(*proof, current)) {
-    // The next proof has not to be lucky again.
-    const std::string proved = session.empty() ? to_hexadecimal(++nonces_) : session;
+    // The next proof has not to be lucky again. Each foreign nonce starts one session.
+    const std::string proved =
+        session.empty() ? sign(proof->nonce).substr(0, number_digits) : session;
     guesses_.remember(proved, attempt.address, now);
     return challenge(proved, Freshness::stale, current);
   }

@@ -51,6 +51,7 @@ read_line() {
       ;;
   esac
   case $trimmed in
+    *[!A-Za-z0-9_.-]*) "$1" "line $number is no setting, NAME = VALUE" ;;
     name) name=$value ;;
     page_password) page_password=$value ;;
     wifi_name) wifi_name=$value ;;
@@ -64,7 +65,7 @@ read_line() {
       settings="$settings$trimmed=$value
 "
       ;;
-    *[!A-Za-z_-]*) "$1" "line $number is no setting, NAME = VALUE" ;;
+    *[0-9.]*) "$1" "line $number is no setting, NAME = VALUE" ;;
     *) "$1" "line $number: there is no setting $trimmed" ;;
   esac
 }

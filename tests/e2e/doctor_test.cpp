@@ -1,9 +1,11 @@
 #include <gtest/gtest.h>
+#include <sched.h>
 
 #include <algorithm>
 #include <chrono>
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <thread>
@@ -114,6 +116,32 @@ TEST(DoctorCommand, EndsWithinThreeSecondsOfCtrlC) {
     EXPECT_EQ(doctor.output(), "");
     EXPECT_FALSE(std::filesystem::exists(archive));
   }
+}
+
+/// Waits until a thread of a program measures its wake-ups, which is the last thing that it does.
+void wait_until_it_measures_wake_ups(const Program& program) {
+  const auto measures = [](const std::filesystem::directory_entry& task) {
+    const std::string thread = task.path().filename();
+    std::string slack_ns;
+    std::ifstream("/proc/" + thread + "/timerslack_ns") >> slack_ns;
+    return slack_ns == "1" || ::sched_getscheduler(std::stoi(thread)) == SCHED_FIFO;
+  };
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  const std::string tasks = "/proc/" + std::to_string(program.process()) + "/task";
+  while (std::ranges::none_of(std::filesystem::directory_iterator(tasks), measures)) {
+    ASSERT_LT(std::chrono::steady_clock::now(), deadline);
+    std::this_thread::yield();
+  }
+}
+
+TEST(DoctorCommand, ReportsNothingAfterCtrlCOnceTheSensorHasBeenRead) {
+  const TemporaryFolder folder;
+  Program doctor({octurn_program(), "doctor", "--sensor", "kinect://7", "--data", folder.path()});
+  wait_until_it_measures_wake_ups(doctor);
+  doctor.send_signal(SIGINT);
+  EXPECT_EQ(doctor.wait(), 1);
+  EXPECT_EQ(doctor.output(), "");
+  EXPECT_NE(doctor.errors().find("stopped before the end"), std::string::npos) << doctor.errors();
 }
 
 TEST(DoctorCommand, LeavesTheDaemonsLinesAndSensorAlone) {

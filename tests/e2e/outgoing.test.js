@@ -4,8 +4,9 @@
 import assert from 'node:assert/strict';
 import {createHash} from 'node:crypto';
 import {once} from 'node:events';
-import {readFile} from 'node:fs/promises';
+import {readdir, readFile, readlink} from 'node:fs/promises';
 import {createServer} from 'node:http';
+import {createServer as createSilentServer} from 'node:net';
 import {join} from 'node:path';
 import {test} from 'node:test';
 
@@ -201,4 +202,46 @@ test('a webhook is told what happens, and again if it did not listen', async (t)
 
   await ask(scanner, `webhooks/${hook.id}`, 'DELETE');
   assert.deepEqual((await ask(scanner, 'webhooks')).webhooks, []);
+});
+
+/** The other ends of a program's sockets, but for those of its server. @returns {Promise<string[]>} as the kernel has them, "0100007F:1F90" */
+async function otherEnds(pid, port) {
+  const files = await readdir(`/proc/${pid}/fd`);
+  const open = new Set(await Promise.all(files.map((file) => readlink(`/proc/${pid}/fd/${file}`).catch(() => ''))));
+  const ends = [];
+  for (const table of ['tcp', 'tcp6', 'udp', 'udp6']) {
+    const [, ...lines] = (await readFile(`/proc/${pid}/net/${table}`, 'utf8')).trim().split('\n');
+    for (const line of lines) {
+      const [, local, remote, , , , , , , inode] = line.trim().split(/\s+/);
+      if (open.has(`socket:[${inode}]`) && parseInt(local.split(':')[1], 16) !== port) {
+        ends.push(remote);
+      }
+    }
+  }
+  return ends;
+}
+
+test('the scanner opens no connection unless somebody has given it an address', async (t) => {
+  const scanner = await startScanner(t, quick);
+  const look = () => otherEnds(scanner.process(), Number(new URL(scanner.url).port));
+  let isDone = false;
+  let looks = 0;
+  const scanned = scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4}).finally(() => {
+    isDone = true;
+  });
+  for (; !isDone; ++looks) {
+    assert.deepEqual(await look(), []);
+    await new Promise(setImmediate);
+  }
+  assert.equal((await scanned).state, 'finished');
+  assert.ok(looks > 10);
+
+  const silent = createSilentServer().listen(0, '127.0.0.1');
+  await once(silent, 'listening');
+  t.after(() => silent.close());
+  const {port} = silent.address();
+  await ask(scanner, 'webhooks', 'POST', {url: `http://127.0.0.1:${port}`, events: []});
+  await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
+  const end = await until(async () => (await look())[0]);
+  assert.equal(parseInt(end.split(':')[1], 16), port);
 });

@@ -28,6 +28,7 @@ async function address(program) {
  * @typedef {Object} Scanner
  * @property {string} url  of the page
  * @property {string} data  the folder it works in
+ * @property {() => number} process  its number
  * @property {(signal?: NodeJS.Signals) => Promise<void>} end
  * @property {() => Promise<void>} restart  at the same address, with the same folder
  */
@@ -54,6 +55,7 @@ export async function startScanner(t, {rig = ['--simulate']} = {}) {
   const scanner = {
     url: '',
     data,
+    process: () => program.pid,
     end: async (signal = 'SIGTERM') => {
       if (program.exitCode === null && program.signalCode === null) {
         program.kill(signal);

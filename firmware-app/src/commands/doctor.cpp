@@ -148,19 +148,21 @@ bool doctor(const DoctorArguments& arguments) {
       .lines = is_in_use(config.data) ? LineOwner::this_program : LineOwner::another};
   load_sensor_drivers();  // changes the working directory: before the first thread
   const SignalStop signal;
+  const auto expect_not_stopped = [&] {
+    if (signal.token().stop_requested()) {
+      throw_stopped(arguments.zip ? "no archive was written" : "");
+    }
+  };
   const SensorReading reading = read_sensor_from_shell(input, signal.token());
-  if (signal.token().stop_requested()) {
-    throw_stopped();
-  }
+  expect_not_stopped();
   std::vector<Finding> findings = run_checks(input, reading);
+  expect_not_stopped();
   if (arguments.turn) {
     std::ranges::move(check_motion(input, signal.token()), std::back_inserter(findings));
   }
   if (arguments.zip) {
     const auto files = make_diagnostics(input, settings.config(), findings, signal.token());
-    if (signal.token().stop_requested()) {
-      throw_stopped("no archive was written");
-    }
+    expect_not_stopped();
     write_file(*arguments.zip, make_zip(files, std::chrono::system_clock::now()));
   }
   write_standard_output(arguments.json ? to_json(findings).dump() + "\n" : table_text(findings));

@@ -33,30 +33,39 @@ void drop_oldest_before(std::map<std::string, GuessLimit::Time>& clients,
   }
 }
 
-}  // namespace
-
-std::chrono::seconds GuessLimit::to_wait(const std::string& address, Time now) const {
-  const std::string client = to_client(address);
-  const auto wait = [now](Time expiry, int free, std::chrono::seconds price) {
-    return std::max(std::chrono::seconds(0),
-                    std::chrono::ceil<std::chrono::seconds>(expiry - now - (free - 1) * price));
-  };
-  const auto found = expiry_.find(client);
-  const auto own = found == expiry_.end() ? std::chrono::seconds(0)
-                                          : wait(found->second, free_guesses, guess_price);
-  return known_.contains(client)
-             ? own
-             : std::max(own, wait(expiry_of_all_, free_guesses_of_all, guess_price_of_all));
+/// Whether guesses that expire then leave one free now.
+bool leaves_one(GuessLimit::Time expiry, GuessLimit::Time now, int free,
+                std::chrono::seconds price) {
+  return expiry - now <= (free - 1) * price;
 }
 
-void GuessLimit::count_wrong(const std::string& address, Time now) {
+/// Adds a guess to those that expire then. It costs its price, or, if that leaves none free, the
+/// price on average.
+void add_guess(GuessLimit::Time& expiry, GuessLimit::Time now, int free, std::chrono::seconds price,
+               double chance) {
+  expiry = std::max(expiry, now);
+  expiry += leaves_one(expiry + price, now, free, price)
+                ? std::chrono::nanoseconds(price)
+                : std::chrono::duration_cast<std::chrono::nanoseconds>(chance * price);
+}
+
+}  // namespace
+
+bool GuessLimit::allows(const std::string& address, Time now) const {
+  const std::string client = to_client(address);
+  const auto found = expiry_.find(client);
+  return (found == expiry_.end() || leaves_one(found->second, now, free_guesses, guess_price)) &&
+         (known_.contains(client) ||
+          leaves_one(expiry_of_all_, now, free_guesses_of_all, guess_price_of_all));
+}
+
+void GuessLimit::count_wrong(const std::string& address, Time now, double chance) {
   std::erase_if(expiry_, [&](const auto& entry) { return entry.second <= now; });
   const std::string client = to_client(address);
   drop_oldest_before(expiry_, client);
-  const auto [entry, fresh] = expiry_.try_emplace(client, now);
-  entry->second += guess_price;
+  add_guess(expiry_.try_emplace(client, now).first->second, now, free_guesses, guess_price, chance);
   if (!known_.contains(client)) {
-    expiry_of_all_ = std::max(expiry_of_all_, now) + guess_price_of_all;
+    add_guess(expiry_of_all_, now, free_guesses_of_all, guess_price_of_all, chance);
   }
 }
 

@@ -119,10 +119,13 @@ std::optional<Response> refusal(mg_connection& connection, const Request& reques
   if (info.query_string != nullptr) {
     target.append("?").append(info.query_string);
   }
+  const bool is_page_load =
+      request.header("Accept").value_or("").find("text/html") != std::string_view::npos;
   return service.login->refusal({.method = request.method,
                                  .target = std::move(target),
                                  .address = info.remote_addr,
-                                 .authorization = request.header("Authorization")},
+                                 .authorization = request.header("Authorization"),
+                                 .reader = is_page_load ? Reader::person : Reader::program},
                                 std::chrono::steady_clock::now());
 }
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdio>
+#include <random>
 #include <system_error>
 #include <utility>
 
@@ -41,13 +42,28 @@ std::string session_of_nonce(const std::string& nonce) {
   return nonce.substr(2 * number_digits, number_digits);
 }
 
-Response refuse_guess(std::chrono::seconds wait) {
-  const std::string seconds = std::to_string(wait.count());
+// A browser shows it once it has sent a password, and tries again by itself. Files of the page are
+// not to be had without one.
+constexpr const char* waiting_page = R"(<!doctype html>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>Octurn</title>
+<p lang="en">Please wait: somebody is guessing the password. Your browser tries again by itself.</p>
+<p lang="de">Bitte warten: jemand rät das Passwort. Ihr Browser versucht es von selbst wieder.</p>
+<p lang="es">Espere: alguien intenta adivinar la contraseña. Su navegador lo intenta de nuevo solo.</p>
+<p lang="fr">Patientez : quelqu’un cherche à deviner le mot de passe. Votre navigateur réessaie seul.</p>
+)";
+
+Response refuse_guess(Reader reader) {
   Response response =
       problem({.code = ErrorCode::too_many_guesses,
-               .detail = "too many wrong passwords came from this address",
-               .hint = "Try again in " + seconds + " seconds, with the right one."});
-  response.headers.emplace_back("Retry-After", seconds);
+               .detail = "too many wrong passwords are being tried",
+               .hint = "Try the right one again each second: chance decides which is checked."});
+  if (reader == Reader::person) {
+    response.headers = {{"Content-Type", "text/html; charset=utf-8"}, {"Refresh", "1"}};
+    response.body = waiting_page;
+  }
+  response.headers.emplace_back("Retry-After", "1");
   return response;
 }
 
@@ -112,8 +128,9 @@ Response Login::challenge(const std::string& session, Freshness proof, std::int6
 }
 
 void Login::count_wrong(const std::string& address, Time now) {
-  guesses_.count_wrong(address, now);
-  if (guesses_.to_wait(address, now).count() > 0) {
+  std::random_device random;
+  guesses_.count_wrong(address, now, std::exponential_distribution<double>{}(random));
+  if (!guesses_.allows(address, now)) {
     log::warning("http", "too many wrong passwords from " + address);
   }
 }
@@ -136,8 +153,8 @@ std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
   }
   const std::string session = is_own(proof->nonce) ? session_of_nonce(proof->nonce) : "";
   const bool is_known = guesses_.knows(session);
-  if (const auto wait = guesses_.to_wait(attempt.address, now); wait.count() > 0 && !is_known) {
-    return refuse_guess(wait);
+  if (!is_known && !guesses_.allows(attempt.address, now)) {
+    return refuse_guess(attempt.reader);
   }
   if (!hash || proof->user != page_user || proof->realm != page_realm || proof->qop != "auth" ||
       proof->response != digest_response(*proof, *hash, attempt.method)) {
@@ -151,7 +168,11 @@ std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
   }
   if (session.empty() || current - period_of_nonce(proof->nonce) > 1 ||
       !is_first_use(*proof, current)) {
-    return challenge(session, Freshness::stale, current);
+    // The next proof has not to be lucky again. Each foreign nonce starts one session.
+    const std::string proved =
+        session.empty() ? sign(proof->nonce).substr(0, number_digits) : session;
+    guesses_.remember(proved, attempt.address, now);
+    return challenge(proved, Freshness::stale, current);
   }
   guesses_.remember(session, attempt.address, now);
   return std::nullopt;

@@ -15,12 +15,16 @@
 
 namespace octurn {
 
+/// Who reads an answer: a person in a browser that loads a page, or a script or another program.
+enum class Reader { person, program };
+
 /// The parts of a request that the login needs.
 struct LoginAttempt {
   std::string method = "GET";
   std::string target = "/";                            ///< as it was sent, with the query
   std::string address = {};                            ///< of the client
   std::optional<std::string_view> authorization = {};  ///< the header of that name
+  Reader reader = Reader::program;
 };
 
 /// Authenticates clients by the page's password and HTTP Digest (RFC 7616). A proof is valid for
@@ -28,7 +32,7 @@ struct LoginAttempt {
 /// an overheard proof is useless. Wrong guesses are slowed down, but not those of a session that
 /// has proved the password: a client stays in its session by the nonces that answer its proofs.
 /// Whoever overhears its proofs can test guesses without the server, so limiting these would only
-/// let others lock the session out.
+/// let others lock the session out. For the same reason an outdated proof starts such a session.
 ///
 /// Thread-safe. The time is a parameter, so that tests need no clock.
 class Login {
@@ -46,7 +50,7 @@ class Login {
   explicit Login(std::filesystem::path password_file, std::filesystem::path own_file = {});
 
   /// Nothing if the request is admitted, as all are without a password; else its answer: 401 with a
-  /// challenge, or 429 after too many wrong guesses.
+  /// challenge, or 429 while too many wrong guesses come.
   std::optional<Response> refusal(const LoginAttempt& attempt, Time now);
 
  private:

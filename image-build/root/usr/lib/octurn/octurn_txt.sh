@@ -42,7 +42,16 @@ read_line() {
   trim "${trimmed#*=}"
   value=$trimmed
   trim "${line%%=*}"
+  case $trimmed=$value in
+    wifi_password=* | page_password=* | ssh_key=*) ;;
+    *=*_password* | name=*=* | wifi_country=*=* | time_zone=*=* | rig=*=* | turntable.*=*=* | scan.*=*=* | laser.*=*=*)
+      # as of two lines that damage made one; what would be repeated may be a secret
+      "$1" "line $number has two settings: each needs a line of its own"
+      return
+      ;;
+  esac
   case $trimmed in
+    *[!A-Za-z0-9_.-]*) "$1" "line $number is no setting, NAME = VALUE" ;;
     name) name=$value ;;
     page_password) page_password=$value ;;
     wifi_name) wifi_name=$value ;;
@@ -56,7 +65,7 @@ read_line() {
       settings="$settings$trimmed=$value
 "
       ;;
-    *[!A-Za-z_-]*) "$1" "line $number is no setting, NAME = VALUE" ;;
+    *[0-9.]*) "$1" "line $number is no setting, NAME = VALUE" ;;
     *) "$1" "line $number: there is no setting $trimmed" ;;
   esac
 }

@@ -54,8 +54,9 @@ forget_password() { sed 's/^\([^ ]* [^ ]*\) .*/\1/' "$kept" | keep; }
 # find_wifi REPORT: sets $network (the name in hexadecimal), $country, $key and $password from the settings; if these are not valid,
 # calls REPORT with the error and fails.
 find_wifi() {
-  if [ "$(printf %s "$wifi_name" | wc -c)" -gt 32 ]; then
-    "$1" "wifi_name = $wifi_name: at most 32 bytes"
+  bytes=$(printf %s "$wifi_name" | wc -c)
+  if [ "$bytes" -gt 32 ]; then
+    "$1" "wifi_name has $bytes bytes: at most 32"
     return 1
   fi
   country=$(echo "$wifi_country" | tr '[:lower:]' '[:upper:]')

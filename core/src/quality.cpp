@@ -492,4 +492,13 @@ Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
   return quality;
 }
 
+Quality judge(const PoseChecks& checks, int threads, const Scan& scan, const ModelReport& model,
+              std::span<const CalibrationFinding> findings,
+              const std::optional<SolvedOptics>& seen) {
+  Quality quality = judge(checks.figures(threads), model, findings);
+  quality.size_error = expected_size_error(scan, model.size, seen);
+  add_warm_up(quality, scan);
+  return quality;
+}
+
 }  // namespace octurn

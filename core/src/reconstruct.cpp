@@ -9,7 +9,8 @@
 
 namespace octurn {
 
-void fit_to_sensor(ReconstructOptions& options, const Scan& scan) {
+void fit_to_scan(ReconstructOptions& options, const Scan& scan) {
+  options.placements = placements(scan);
   if (scan.laser) {
     options.solid.truncation = laser_truncation;
     options.program_memory += LaserLines::expected_bytes(scan);
@@ -20,13 +21,12 @@ ReconstructOptions model_options(const Scan& scan) {
   ReconstructOptions options{
       .method = has_free_poses(scan) ? Method::intersection : Method::solid,
       .clip = model_clip(scan),
-      .placements = placements(scan),
   };
   if (scan.laser) {
     options.leaf_size = laser_leaf_size;
     options.target_error = laser_target_error;
   }
-  fit_to_sensor(options, scan);
+  fit_to_scan(options, scan);
   return options;
 }
 

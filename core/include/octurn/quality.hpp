@@ -12,7 +12,7 @@
 
 #include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"
-#include "octurn/model.hpp"
+#include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 
@@ -122,6 +122,28 @@ class ScanCheck {
   std::vector<std::unique_ptr<Stop>> stops_;
 };
 
+/// The same for a scan of several poses, each with its own platform frame and clip box.
+class PoseChecks {
+ public:
+  /// @param placements  one for each pose; empty: one pose with the clip box `clip`
+  /// @param stops       number of stops, of all poses together
+  PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops);
+
+  /// Adds a stop's snapshot. Threads and errors are as of `ScanCheck::add`.
+  /// @param stop  index, below the number of stops
+  void add(std::size_t stop, const Snapshot& snapshot);
+
+  /// Returns the figures of each pose, with places in the object's frame.
+  std::vector<ScanFigures> figures(int threads) const;
+
+ private:
+  std::vector<Placement> placements_;
+  std::vector<std::unique_ptr<ScanCheck>> checks_;
+};
+
+/// Wraps a source: each snapshot that is read is also added to `checks`, which must outlive it.
+SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks);
+
 /// The expected size error of a model, from the sigmas of focal length and scale.
 /// @param size  of the model's bounding box, metres
 /// @param seen  what the scan's calibration found of the optics, applied or not
@@ -145,5 +167,14 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
 /// @param findings  of the calibration from the first pose's depth images
 Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
               std::span<const CalibrationFinding> findings = {});
+
+/// Judges a finished model of a scan: as above, with the expected size error and "warm-up".
+/// @param checks    of the snapshots that the model was made of
+/// @param scan      with the pose that it was made with
+/// @param findings  of the calibration from the same depth images, and of the object's move
+/// @param seen      as in `expected_size_error`
+Quality judge(const PoseChecks& checks, int threads, const Scan& scan, const ModelReport& model,
+              std::span<const CalibrationFinding> findings,
+              const std::optional<SolvedOptics>& seen);
 
 }  // namespace octurn

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -132,7 +133,41 @@ struct SurfaceCount {
   std::uint64_t dropped_leaves = 0;  ///< their voxels
 };
 
-struct ModelReport;
+class SurfaceCells;
+
+/// Coarse geometry of a model, for `judge`.
+struct ModelPlaces {
+  /// Metres, object's frame: where the surface above the base was made by hole filling.
+  std::vector<Eigen::Vector3d> unseen = {};
+  /// The cells of a grid that the surface passes through; null: no surface.
+  std::shared_ptr<const SurfaceCells> surface = {};
+};
+
+/// Connected components that were seen but left out of a model.
+struct DroppedParts {
+  std::uint64_t count = 0;
+  double volume = 0.0;  ///< cubic metres
+};
+
+/// The figures of a finished model.
+struct ModelReport {
+  std::uint64_t leaves = 0;  ///< occupied leaves; of the method `solid`, voxels inside
+  std::uint64_t triangles = 0;
+  std::uint64_t bytes = 0;  ///< of the STL
+  std::uint64_t parts = 0;  ///< connected components; 0: not counted
+  double filled_share = 0;  ///< of the area, made by hole filling, 0 to 1
+  double unseen_share = 0;  ///< the same without the base, the facets in z = 0
+  ModelPlaces places = {};
+  /// Whether the surface is closed. Of the method `solid` every directed edge is compared with its
+  /// opposite, corners bit by bit; of `intersection` the sides of neighbouring bricks of leaves,
+  /// inside which the surface is closed by construction. An open one is missed with a chance of
+  /// 2^-64.
+  bool watertight = false;
+  double volume = 0.0;  ///< cubic metres; right only if watertight
+  DroppedParts dropped = {};
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< metres, of the bounding box
+  double bottom = 0.0;                             ///< metres, lowest z of that box
+};
 
 /// A reconstruction in progress: snapshots are added, then the surface is drawn. Not thread-safe;
 /// each call runs and joins its own threads, as many as the options say.

@@ -8,11 +8,11 @@
 
 #include "calibration/lens_files.hpp"
 #include "calibration/sensor_map_files.hpp"
-#include "calibration/solve_pose.hpp"
 #include "capture/plan.hpp"
 #include "capture/scan_of_rig.hpp"
 #include "capture/take_depth_image.hpp"
 #include "capture/take_pictures.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/optics_json.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"

@@ -34,7 +34,7 @@ ReconstructOptions options_of_scan(const Scan& scan, const ScanSettings& setting
   }
   Scan whole = scan;
   whole.shots.resize(snapshots);
-  fit_to_sensor(options, whole);
+  fit_to_scan(options, whole);
   return options;
 }
 

@@ -10,13 +10,13 @@
 #include <vector>
 
 #include "build/early_model.hpp"
-#include "calibration/solve_pose.hpp"
 #include "capture/last_look.hpp"
 #include "capture/line_preview.hpp"
 #include "capture/plan.hpp"
 #include "capture/scan_of_rig.hpp"
 #include "capture/take_depth_image.hpp"
 #include "capture/take_pictures.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
@@ -309,9 +309,8 @@ std::optional<Model> Run::build(Clock::time_point captured,
   if (!report) {
     return std::nullopt;
   }
-  Quality quality = judge(check_.figures(reconstruction_.options().threads), *report, findings);
-  quality.size_error = expected_size_error(scan_, report->size, seen_optics_);
-  add_warm_up(quality, scan_);
+  Quality quality =
+      judge(check_, reconstruction_.options().threads, scan_, *report, findings, seen_optics_);
   reconstruction_.add_coarser_reason(quality);
   report->places = {};  // dropped: every request for a job's state copies it
   return Model{.report = *std::move(report),

@@ -126,7 +126,7 @@ BuiltModel build_model(ModelInput input, const std::stop_token& stop) {
   SnapshotSource stored = input.snapshots(scan);
   SnapshotSource added = counted(stored, input.progress);
   if (input.is_judged && !is_tiled) {
-    checks.emplace(options.placements, options.clip, scan.shots.size());
+    checks.emplace(options.placements, options.clip, scan.shots.size(), sensor_traits(scan));
     added = checked_snapshots(std::move(added), *checks);
   }
   input.progress(BuildStep::adding, 0);

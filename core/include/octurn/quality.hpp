@@ -70,6 +70,7 @@ struct BelowBox {
 
 /// Measurements on the depth images of a scan, with the poses and the clip box of its model.
 struct ScanFigures {
+  SensorTraits sensor = {};
   std::size_t stops = 0;
   double object_pixels = 0;  ///< mean number of readings inside the box at a stop
   double distance = 0;       ///< metres: mean distance of these readings from the sensor
@@ -89,7 +90,6 @@ struct ScanFigures {
   std::vector<Eigen::Vector3d> contradicted_places = {};
   /// Metres, object's frame: centres of 5 mm cells in which several stops saw the object.
   std::vector<Eigen::Vector3d> seen = {};
-  bool by_lines = false;  ///< whether the stops saw lines of lasers
   BelowBox below = {};
   /// Metres above the highest reading of the object: end of a hole in the readings, at most stops.
   double unseen_top = 0;
@@ -100,7 +100,7 @@ class ScanCheck {
  public:
   /// @param clip   metres, object's frame: the box that the model is clipped to
   /// @param stops  number of stops of the scan
-  ScanCheck(const Box& clip, std::size_t stops);
+  ScanCheck(const Box& clip, std::size_t stops, const SensorTraits& sensor = {});
   ~ScanCheck();
   ScanCheck(const ScanCheck&) = delete;
   ScanCheck& operator=(const ScanCheck&) = delete;
@@ -119,6 +119,7 @@ class ScanCheck {
 
  private:
   Box clip_;
+  SensorTraits sensor_;
   std::vector<std::unique_ptr<Stop>> stops_;
 };
 
@@ -127,7 +128,8 @@ class PoseChecks {
  public:
   /// @param placements  one for each pose; empty: one pose with the clip box `clip`
   /// @param stops       number of stops, of all poses together
-  PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops);
+  PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops,
+             const SensorTraits& sensor);
 
   /// Adds a stop's snapshot. Threads and errors are as of `ScanCheck::add`.
   /// @param stop  index, below the number of stops

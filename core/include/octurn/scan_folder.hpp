@@ -118,8 +118,11 @@ std::vector<Placement> placements(const Scan& scan);
 /// @throws Error  as above
 Box model_clip(const Scan& scan);
 
-/// Adapts options to the scan: sets the placements of its poses; for a scan by laser line it sets
-/// the truncation, and adds the memory of its lines to `program_memory`.
+/// The traits of the scan's sensor.
+const SensorTraits& sensor_traits(const Scan& scan);
+
+/// Adapts options to the scan: sets the placements of its poses and the sensor's truncation; for a
+/// scan by laser line it adds the memory of its lines to `program_memory`.
 /// @throws Error  as `model_pose`
 void fit_to_scan(ReconstructOptions& options, const Scan& scan);
 

@@ -119,8 +119,8 @@ std::vector<Eigen::Vector3d> find_seen(const Stops& stops) {
 
 }  // namespace
 
-ScanCheck::ScanCheck(const Box& clip, std::size_t stops)
-    : clip_{.min = clip.min, .max = clip.max}, stops_(stops) {}
+ScanCheck::ScanCheck(const Box& clip, std::size_t stops, const SensorTraits& sensor)
+    : clip_{.min = clip.min, .max = clip.max}, sensor_(sensor), stops_(stops) {}
 
 ScanCheck::~ScanCheck() = default;
 
@@ -135,7 +135,7 @@ ScanFigures ScanCheck::figures(int threads) const {
       stops.push_back(stop.get());
     }
   }
-  ScanFigures figures{.stops = stops.size()};
+  ScanFigures figures{.sensor = sensor_, .stops = stops.size()};
   if (stops.empty()) {
     return figures;
   }
@@ -163,8 +163,7 @@ ScanFigures ScanCheck::figures(int threads) const {
   }
   figures.unseen_top = find_unseen_top(stops);
   figures.seen = find_seen(stops);
-  figures.by_lines = std::ranges::any_of(stops, &Stop::has_lines);
-  StopComparison comparison = compare_stops(stops, threads);
+  StopComparison comparison = compare_stops(stops, sensor_, threads);
   figures.disagreement = comparison.disagreement;
   figures.disagreeing_places = std::move(comparison.disagreeing_places);
   figures.contradicted = std::move(comparison.contradicted);
@@ -172,13 +171,14 @@ ScanFigures ScanCheck::figures(int threads) const {
   return figures;
 }
 
-PoseChecks::PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops)
+PoseChecks::PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops,
+                       const SensorTraits& sensor)
     : placements_(std::move(placements)) {
   if (placements_.empty()) {
     placements_.push_back({.clip = clip});
   }
   for (const Placement& placement : placements_) {
-    checks_.push_back(std::make_unique<ScanCheck>(placement.clip, stops));
+    checks_.push_back(std::make_unique<ScanCheck>(placement.clip, stops, sensor));
   }
 }
 

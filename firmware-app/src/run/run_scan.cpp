@@ -47,7 +47,8 @@ class Run {
         scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder)
                                                             : scan_of_rig(rig, settings)),
         reconstruction_(options_of_scan(scan_, settings, limits)),
-        check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots)),
+        check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots),
+               sensor_traits(scan_)),
         preview_solves_(settings.snapshots) {}
 
   bool has_all_snapshots() const { return done() == settings_.snapshots; }

@@ -63,7 +63,7 @@ class LinePreviewOfAScan : public ::testing::Test {
     const ScanObserver observer{.on_added = [&](const Reconstructor& reconstruction, int done) {
       shown.push_back({.stops = done, .parts = parts_with_facets(preview_of(reconstruction))});
     }};
-    EXPECT_TRUE(run_scan(settings(stops), {}, folder_.path(), rig, {}, observer));
+    EXPECT_TRUE(run_scan(settings(stops), {}, folder_.path(), *make_capture(rig), {}, observer));
     return shown;
   }
 

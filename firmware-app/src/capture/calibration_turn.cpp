@@ -246,8 +246,10 @@ std::optional<TurnReport> measure_laser_turn(const ScanSettings& settings, const
   const FolderOfTurn folder(data);
   Turntable& turntable = rig.turntable();
   const int steps = turntable.steps_per_turn();
-  Scan scan = scan_of_rig(rig, settings);
-  begin_scan(scan, settings, folder.path(), rig);
+  fs::create_directories(folder.path());
+  Scan scan = scan_of_lasers(rig, settings);
+  scan.sensor_name = rig.camera().name();
+  scan.sensor_serial = rig.camera().serial();
   for (const std::int64_t position :
        stop_positions(turntable.position(), steps, settings.snapshots)) {
     const Stop at{.index = static_cast<int>(scan.shots.size()), .position = position};
@@ -255,6 +257,7 @@ std::optional<TurnReport> measure_laser_turn(const ScanSettings& settings, const
     if (!take_stop(rig, at, angle, folder.path(), scan, stop, observer)) {
       return std::nullopt;
     }
+    observer.on_progress(Phase::capturing, static_cast<int>(scan.shots.size()));
   }
   observer.on_progress(Phase::calibrating, settings.snapshots);
   return solve_turn(folder.path(), scan, threads, stop);

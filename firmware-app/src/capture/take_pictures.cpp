@@ -176,7 +176,6 @@ bool take_stop(Rig& rig, const Stop& at, double angle, const std::filesystem::pa
   }
   writer.finish();
   store_stop(folder, scan, angle);
-  observer.on_progress(Phase::capturing, static_cast<int>(scan.shots.size()));
   return true;
 }
 

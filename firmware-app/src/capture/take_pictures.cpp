@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 // 30 Hz.
 constexpr int max_stale_pictures = 30;
 
-// Light that hides lines: a quarter of the picture is nearly as bright as a camera tells.
+// Too bright to see a line: a quarter of the pixels is near saturation.
 constexpr std::uint8_t white = 240;
 constexpr double max_white_share = 0.25;
 

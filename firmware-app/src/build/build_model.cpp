@@ -50,13 +50,15 @@ std::vector<CalibrationFinding> known_findings(const BuildInput& input, const Sc
                         : std::vector<CalibrationFinding>();
 }
 
-}  // namespace
-
+/// Returns the findings of a scan's calibration and of its last look.
+/// @param folder  of the scan. @throws Error  as `read_scan`
 std::vector<CalibrationFinding> scan_findings(const Job& job, const std::filesystem::path& folder) {
   auto findings = calibration_findings(job);
   add_stored_move(folder, findings);
   return findings;
 }
+
+}  // namespace
 
 std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
                                  const std::filesystem::path& file, const std::stop_token& stop,

@@ -30,14 +30,15 @@ constexpr double bottom = -0.02;
 constexpr double top = 0.4;
 constexpr std::size_t max_points = 3000;  // enough for a picture of some hundred pixels
 
-}  // namespace
-
+/// Adds a point if it lies in the slice. @param point  metres, object's frame
 void add_to_slice(Slice& slice, const Eigen::Vector3d& point) {
   if (std::abs(point.y()) <= half_thickness && std::abs(point.x()) <= radius &&
       point.z() >= bottom && point.z() <= top) {
     slice.emplace_back(point.x(), point.z());
   }
 }
+
+}  // namespace
 
 Slice thinned(const Slice& slice) {
   const std::size_t step = slice.size() / max_points + 1;

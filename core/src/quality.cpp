@@ -18,11 +18,7 @@ namespace {
 
 constexpr double min_volume = 1e-7;  // cubic metres
 
-// Two stops of a correct rig disagree by 0.5 to 0.7 mm at 0.65 m with a Kinect v1, whose noise
-// grows with the square of the distance.
-constexpr double noise_distance = 0.65;       // metres
-constexpr double look_disagreement = 0.0011;  // metres
-constexpr double bad_disagreement = 0.0022;
+constexpr double bad_disagreements = 2;   // as many times what deserves a look
 constexpr double max_contradicted = 0.1;  // of a stop's readings
 
 constexpr double look_height = 0.0025;  // metres between the platform and z = 0
@@ -130,18 +126,20 @@ class Judgement {
 };
 
 void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
-  const double scale = std::pow(std::max(scan.distance, noise_distance) / noise_distance, 2);
-  if (scan.disagreement > look_disagreement * scale) {
-    judgement.add(scan.disagreement > bad_disagreement * scale ? Verdict::bad : Verdict::look,
-                  {.code = "stops-disagree",
-                   .detail = "two stops disagree about the object by " +
-                             mm_text(scan.disagreement, text_digits),
-                   .hint = "Calibrate the rig, and check that object and sensor stand firm.",
-                   .parameters = {{"disagreement_mm", mm_from_metres(scan.disagreement)}},
-                   .places = scan.disagreeing_places});
+  const double look_disagreement = scan.sensor.disagreement_at_1_m *
+                                   std::pow(std::max(scan.distance, scan.sensor.noise_distance), 2);
+  if (scan.disagreement > look_disagreement) {
+    judgement.add(
+        scan.disagreement > bad_disagreements * look_disagreement ? Verdict::bad : Verdict::look,
+        {.code = "stops-disagree",
+         .detail =
+             "two stops disagree about the object by " + mm_text(scan.disagreement, text_digits),
+         .hint = "Calibrate the rig, and check that object and sensor stand firm.",
+         .parameters = {{"disagreement_mm", mm_from_metres(scan.disagreement)}},
+         .places = scan.disagreeing_places});
   }
   const auto odd = std::ranges::max_element(scan.contradicted);
-  if (scan.disagreement <= look_disagreement * scale && odd != scan.contradicted.end() &&
+  if (scan.disagreement <= look_disagreement && odd != scan.contradicted.end() &&
       *odd > max_contradicted) {
     judgement.add(
         Verdict::look,
@@ -468,7 +466,7 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
   judge_top(judgement, scan);
   judge_coverage(judgement, scan, model);
   judge_hollow(judgement, scan, model);
-  if (scan.by_lines) {  // a depth sensor does not see below what overhangs
+  if (scan.sensor.sees_lines) {  // a depth sensor does not see below what overhangs
     judge_fill(judgement, scan, model);
   }
   if (scan.platform_height.value_or(0) <= look_height) {  // else they would judge the platform
@@ -483,12 +481,21 @@ Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
   ScanFigures first = poses.front();
   // Another pose may have seen what lies in a gap between the stops of one, or what is filled in.
   first.widest_gap = std::ranges::min(poses, {}, &ScanFigures::widest_gap).widest_gap;
-  first.by_lines = first.by_lines && poses.size() == 1;
+  first.sensor.sees_lines = first.sensor.sees_lines && poses.size() == 1;
   Quality quality = judge(first, model, findings);
   for (std::size_t i = 1; i < poses.size(); ++i) {
     add_reasons(quality, judge_side(poses[i], model), i + 1);
   }
   keep_causes(quality);
+  return quality;
+}
+
+Quality judge(const PoseChecks& checks, int threads, const Scan& scan, const ModelReport& model,
+              std::span<const CalibrationFinding> findings,
+              const std::optional<SolvedOptics>& seen) {
+  Quality quality = judge(checks.figures(threads), model, findings);
+  quality.size_error = expected_size_error(scan, model.size, seen);
+  add_warm_up(quality, scan);
   return quality;
 }
 

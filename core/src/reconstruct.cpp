@@ -9,9 +9,10 @@
 
 namespace octurn {
 
-void fit_to_sensor(ReconstructOptions& options, const Scan& scan) {
+void fit_to_scan(ReconstructOptions& options, const Scan& scan) {
+  options.placements = placements(scan);
+  options.solid.truncation = sensor_traits(scan).truncation;
   if (scan.laser) {
-    options.solid.truncation = laser_truncation;
     options.program_memory += LaserLines::expected_bytes(scan);
   }
 }
@@ -19,14 +20,11 @@ void fit_to_sensor(ReconstructOptions& options, const Scan& scan) {
 ReconstructOptions model_options(const Scan& scan) {
   ReconstructOptions options{
       .method = has_free_poses(scan) ? Method::intersection : Method::solid,
+      .leaf_size = sensor_traits(scan).leaf_size,
       .clip = model_clip(scan),
-      .placements = placements(scan),
+      .target_error = sensor_traits(scan).target_error,
   };
-  if (scan.laser) {
-    options.leaf_size = laser_leaf_size;
-    options.target_error = laser_target_error;
-  }
-  fit_to_sensor(options, scan);
+  fit_to_scan(options, scan);
   return options;
 }
 

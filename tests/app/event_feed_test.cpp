@@ -66,7 +66,7 @@ TEST(EventFeed, HoldsAPlaceForEachStream) {
   EXPECT_TRUE(feed.watch(""));
 }
 
-TEST(EventFeed, FindsByItsHeartbeatWhoHasGone) {
+TEST(EventFeed, HeartbeatDetectsDisconnect) {
   FeedLimits limits = brisk;
   limits.heartbeat = 1ms;
   EventFeed feed([] { return std::vector<News>{}; }, limits);

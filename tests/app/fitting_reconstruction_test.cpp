@@ -66,8 +66,8 @@ TEST(FittingReconstruction, KeepsAScanWhoseModelDoesNotFit) {
   settings.method = Method::solid;
   settings.pose = PoseSource::configured;
   settings.leaf_size = 0.0005;
-  const auto model =
-      run_scan(settings, {.threads = 1, .memory_bytes = 36 * mb}, folder.path(), rig, {}, {});
+  const auto model = run_scan(settings, {.threads = 1, .memory_bytes = 36 * mb}, folder.path(),
+                              *make_capture(rig), {}, {});
   ASSERT_TRUE(model);
   EXPECT_TRUE(model->report.watertight);
   EXPECT_EQ(read_scan(folder.path()).shots.size(), 3U);

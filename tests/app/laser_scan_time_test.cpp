@@ -168,7 +168,7 @@ TEST(LaserScanTime, HasEachPictureWrittenWhileTheNextOneIsTaken) {
     }
   });
   Rig rig(simulated.options(1000));
-  ASSERT_TRUE(run_scan(settings(stops), {}, folder.path(), rig, {}, {}));
+  ASSERT_TRUE(run_scan(settings(stops), {}, folder.path(), *make_capture(rig), {}, {}));
   EXPECT_EQ(written, 2 * stops);
 }
 
@@ -190,7 +190,7 @@ TEST(LaserScanTime, HasAllOfAStopWrittenBeforeThePlatformMovesOn) {
       ++written.back();
     }
   }};
-  ASSERT_TRUE(run_scan(settings(stops), {}, folder.path(), rig, {}, observer));
+  ASSERT_TRUE(run_scan(settings(stops), {}, folder.path(), *make_capture(rig), {}, observer));
   EXPECT_EQ(written, (std::vector<std::size_t>{0, 1, 2, 3}));
 }
 

@@ -94,7 +94,7 @@ std::optional<Model> scan(const Vector3d& by, int looks, PoseSource pose, const 
   Rig rig({.speed = SensorOfMovedObject::speed, .open_sensor = [&](const std::string&) {
              return std::make_unique<SensorOfMovedObject>(by, looks);
            }});
-  return run_scan(eight_stops(pose), {}, folder, rig, {}, {});
+  return run_scan(eight_stops(pose), {}, folder, *make_capture(rig), {}, {});
 }
 
 std::vector<std::string> moves_told(const Model& model) {
@@ -161,7 +161,8 @@ TEST(LastLook, IsInNoModelAndInNoSnapshot) {
   Rig rig({.open_sensor = [](const std::string&) -> std::unique_ptr<DepthSensor> {
     throw Error(ErrorCode::sensor_missing, "none is plugged in");
   }});
-  ASSERT_TRUE(run_scan(eight_stops(PoseSource::configured), {}, folder.path(), rig, {}, {}));
+  ASSERT_TRUE(
+      run_scan(eight_stops(PoseSource::configured), {}, folder.path(), *make_capture(rig), {}, {}));
   EXPECT_TRUE(content_of(folder.path() / "Scan.stl") == model);
   EXPECT_EQ(content_of(folder.path() / "scan.json"), description);
 }
@@ -177,7 +178,7 @@ TEST(LastLook, CostsNoScanWhereItFails) {
       }
     };
     Rig rig(faulty.options(500));
-    const auto model = run_scan(few_snapshots(4), {}, folder.path(), rig, {}, {});
+    const auto model = run_scan(few_snapshots(4), {}, folder.path(), *make_capture(rig), {}, {});
     ASSERT_TRUE(model) << fails;
     EXPECT_EQ(model->report.watertight, true);
     EXPECT_GT(looks_at_first, few_snapshots().frames);
@@ -195,11 +196,11 @@ TEST(LastLook, IsCutShortWhereTheScanIsCancelled) {
       stop.request_stop();
     }
   };
-  EXPECT_FALSE(run_scan(few_snapshots(4), {}, folder.path(), rig, stop.get_token(),
+  EXPECT_FALSE(run_scan(few_snapshots(4), {}, folder.path(), *make_capture(rig), stop.get_token(),
                         {.on_progress = cancel}));
   EXPECT_EQ(read_scan(folder.path()).shots.size(), 4U);
   EXPECT_FALSE(read_object_move(folder.path()));
-  EXPECT_TRUE(run_scan(few_snapshots(4), {}, folder.path(), rig, {}, {}));
+  EXPECT_TRUE(run_scan(few_snapshots(4), {}, folder.path(), *make_capture(rig), {}, {}));
 }
 
 }  // namespace

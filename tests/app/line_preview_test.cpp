@@ -63,7 +63,7 @@ class LinePreviewOfAScan : public ::testing::Test {
     const ScanObserver observer{.on_added = [&](const Reconstructor& reconstruction, int done) {
       shown.push_back({.stops = done, .parts = parts_with_facets(preview_of(reconstruction))});
     }};
-    EXPECT_TRUE(run_scan(settings(stops), {}, folder_.path(), rig, {}, observer));
+    EXPECT_TRUE(run_scan(settings(stops), {}, folder_.path(), *make_capture(rig), {}, observer));
     return shown;
   }
 
@@ -84,7 +84,7 @@ TEST_F(LinePreviewOfAScan, LeavesTheModelAsItIsMadeFromTheFolder) {
   const Scan stored = read_scan(folder_.path());
   ReconstructOptions options = reconstruct_options(settings(12), {.threads = 1});
   options.clip = stored.clip;
-  fit_to_sensor(options, stored);
+  fit_to_scan(options, stored);
   const SnapshotSource snapshots = stored_snapshots(folder_.path(), stored);
   const std::unique_ptr<Reconstructor> again = make_reconstructor(options);
   again->add(snapshots);
@@ -98,7 +98,7 @@ TEST_F(LinePreviewOfAScan, AddsEachLineOnce) {
   const Scan stored = read_scan(folder_.path());
   ReconstructOptions options = reconstruct_options(settings(12), {.threads = 1});
   options.clip = stored.clip;
-  fit_to_sensor(options, stored);
+  fit_to_scan(options, stored);
   const auto last_seen = [&](const std::vector<std::size_t>& asked) {
     std::vector<Facet> last;
     const ScanObserver observer{.on_added = [&](const Reconstructor& reconstruction, int) {

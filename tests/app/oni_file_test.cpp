@@ -133,7 +133,7 @@ TEST(OniFile, IsScanned) {
   record_oni(file, 3);
   Rig rig({.sensor_uri = file.string(), .speed = 50});
   const ScanSettings settings = few_snapshots();
-  const auto model = run_scan(settings, {}, folder.path() / "scan", rig, {}, {});
+  const auto model = run_scan(settings, {}, folder.path() / "scan", *make_capture(rig), {}, {});
   ASSERT_TRUE(model.has_value());
   EXPECT_TRUE(model->report.watertight);
   EXPECT_GT(model->report.triangles, 500);

@@ -61,6 +61,14 @@ TEST(PreviewImage, IsBrighterTheNearerAndBlackWithoutAReading) {
   EXPECT_EQ(picture.at(300, 100), 255);
 }
 
+TEST(PreviewImage, HasTheRangeOfItsSensor) {
+  const DepthFrame near = frame_of(640, 480, 1000);  // 10 cm
+  const DepthFrame far = frame_of(640, 480, 2000);
+  const SensorTraits& sensor = sensor_traits("Intel RealSense D405");
+  EXPECT_LT(decoded(preview_png(far, 0.0001, sensor)).at(50, 100),
+            decoded(preview_png(near, 0.0001, sensor)).at(50, 100));
+}
+
 TEST(PreviewImage, KeepsThePlaceOfThings) {
   DepthFrame frame = frame_of(640, 480, 15000);
   frame.depth[240 * 640 + 100] = 5000;

@@ -31,7 +31,7 @@ int snapshots_in(const fs::path& folder) {
 TEST(RunScan, StoresAScanThatGivesTheSameModelLater) {
   const TemporaryFolder folder;
   Rig rig(rig_of());
-  const auto model = run_scan(few_snapshots(), {}, folder.path(), rig, {}, {});
+  const auto model = run_scan(few_snapshots(), {}, folder.path(), *make_capture(rig), {}, {});
   ASSERT_TRUE(model);
   EXPECT_TRUE(model->report.watertight);
   EXPECT_GT(model->report.triangles, 1000U);
@@ -50,7 +50,7 @@ TEST(RunScan, StoresAScanThatGivesTheSameModelLater) {
 TEST(RunScan, TellsTheAngleOfEachStopAndTheSettings) {
   const TemporaryFolder folder;
   Rig rig(rig_of());
-  ASSERT_TRUE(run_scan(few_snapshots(), {}, folder.path(), rig, {}, {}));
+  ASSERT_TRUE(run_scan(few_snapshots(), {}, folder.path(), *make_capture(rig), {}, {}));
   const Scan scan = read_scan(folder.path());
   ASSERT_EQ(scan.shots.size(), 3U);
   const double steps = rig.turntable().steps_per_turn();
@@ -68,9 +68,9 @@ TEST(RunScan, TurnsOneWayAndSeesTheSameAgain) {
   const TemporaryFolder first;
   const TemporaryFolder second;
   Rig rig(rig_of("octurn-simulator://?speed=20&noise=0"));
-  ASSERT_TRUE(run_scan(few_snapshots(), {}, first.path(), rig, {}, {}));
+  ASSERT_TRUE(run_scan(few_snapshots(), {}, first.path(), *make_capture(rig), {}, {}));
   const std::int64_t position = rig.turntable().position();
-  ASSERT_TRUE(run_scan(few_snapshots(), {}, second.path(), rig, {}, {}));
+  ASSERT_TRUE(run_scan(few_snapshots(), {}, second.path(), *make_capture(rig), {}, {}));
   EXPECT_EQ(rig.turntable().position(), position + rig.turntable().steps_per_turn());
   EXPECT_TRUE(content_of(first.path() / "Scan.stl") == content_of(second.path() / "Scan.stl"));
 }
@@ -81,7 +81,7 @@ TEST(RunScan, TakesOneFrameAStopForTheBasicFilter) {
   ScanSettings settings = few_snapshots();
   settings.filter = DepthFilter::basic;
   int frames = 0;
-  ASSERT_TRUE(run_scan(settings, {}, folder.path(), rig, {},
+  ASSERT_TRUE(run_scan(settings, {}, folder.path(), *make_capture(rig), {},
                        {.on_frame = [&](const DepthFrame&) { ++frames; }}));
   EXPECT_EQ(frames, 4);  // the fourth is the last look, at the first stop again
 }
@@ -91,7 +91,7 @@ TEST(RunScan, GoesThroughItsPhasesInOrder) {
   Rig rig(rig_of());
   std::vector<std::pair<Phase, int>> seen;
   ASSERT_TRUE(
-      run_scan(few_snapshots(2), {}, folder.path(), rig, {},
+      run_scan(few_snapshots(2), {}, folder.path(), *make_capture(rig), {},
                {.on_progress = [&](Phase phase, int done) { seen.emplace_back(phase, done); }}));
   EXPECT_EQ(seen, (std::vector<std::pair<Phase, int>>{{Phase::turning, 0},
                                                       {Phase::capturing, 0},
@@ -115,7 +115,8 @@ TEST(RunScan, HasASnapshotOnTheDiskBeforeThePlatformMovesOn) {
       read_snapshot(folder.path(), scan, scan.shots.back());
     }
   };
-  ASSERT_TRUE(run_scan(few_snapshots(), {}, folder.path(), rig, {}, {.on_progress = check}));
+  ASSERT_TRUE(
+      run_scan(few_snapshots(), {}, folder.path(), *make_capture(rig), {}, {.on_progress = check}));
 }
 
 TEST(RunScan, CountsASnapshotThatIsOnTheDiskAlthoughTheOneBeforeItCannotBeAdded) {
@@ -125,7 +126,8 @@ TEST(RunScan, CountsASnapshotThatIsOnTheDiskAlthoughTheOneBeforeItCannotBeAdded)
   const ScanObserver observer{
       .on_progress = [&](Phase, int done) { counted = done; },
       .on_added = [](const Reconstructor&, int) { throw std::runtime_error("cannot be added"); }};
-  EXPECT_THROW(run_scan(few_snapshots(), {}, folder.path(), rig, {}, observer), std::runtime_error);
+  EXPECT_THROW(run_scan(few_snapshots(), {}, folder.path(), *make_capture(rig), {}, observer),
+               std::runtime_error);
   EXPECT_EQ(counted, snapshots_in(folder.path()));
 }
 
@@ -144,7 +146,7 @@ TEST(RunScan, StopsInAnyPhaseAndKeepsWhatWasStored) {
         stop.request_stop();
       }
     };
-    EXPECT_FALSE(run_scan(few_snapshots(), {}, folder.path(), rig, stop.get_token(),
+    EXPECT_FALSE(run_scan(few_snapshots(), {}, folder.path(), *make_capture(rig), stop.get_token(),
                           {.on_progress = stop_in_phase}))
         << to_string(moment.first);
     EXPECT_EQ(snapshots_in(folder.path()), moment.second) << to_string(moment.first);
@@ -163,8 +165,8 @@ TEST(RunScan, FailsWhenTheSensorFallsSilentAndKeepsWhatWasStored) {
     return std::make_unique<SensorSilentOnceTurned>(uri);
   };
   Rig rig(options);
-  const Error error =
-      error_thrown_by([&] { run_scan(few_snapshots(), {}, folder.path(), rig, {}, {}); });
+  const Error error = error_thrown_by(
+      [&] { run_scan(few_snapshots(), {}, folder.path(), *make_capture(rig), {}, {}); });
   EXPECT_EQ(error.code(), ErrorCode::sensor_silent);
   EXPECT_FALSE(error.hint().empty());
   const Scan scan = read_scan(folder.path());
@@ -175,18 +177,20 @@ TEST(RunScan, FailsWhenTheSensorFallsSilentAndKeepsWhatWasStored) {
 TEST(RunScan, FailsWhenTheSensorIsUnplugged) {
   const TemporaryFolder folder;
   Rig rig(rig_of("octurn-simulator://?speed=20&lost-after=60"));
-  EXPECT_EQ(code_thrown_by([&] { run_scan(few_snapshots(200), {}, folder.path(), rig, {}, {}); }),
+  EXPECT_EQ(code_thrown_by([&] {
+              run_scan(few_snapshots(200), {}, folder.path(), *make_capture(rig), {}, {});
+            }),
             "sensor-lost");
 }
 
 TEST(RunScan, LeavesOutASnapshotThatIsDamaged) {
   const TemporaryFolder folder;
   Rig rig(rig_of());
-  ASSERT_TRUE(run_scan(few_snapshots(), {}, folder.path(), rig, {}, {}));
+  ASSERT_TRUE(run_scan(few_snapshots(), {}, folder.path(), *make_capture(rig), {}, {}));
   for (const char* const file : {"snapshots/000.png", "snapshots/002.png"}) {
     put(folder.path() / file, content_of(folder.path() / file).substr(0, 1000));
     fs::remove(folder.path() / "Scan.stl");
-    const auto model = run_scan(few_snapshots(), {}, folder.path(), rig, {}, {});
+    const auto model = run_scan(few_snapshots(), {}, folder.path(), *make_capture(rig), {}, {});
     ASSERT_TRUE(model) << file;
     EXPECT_TRUE(model->report.watertight);
   }
@@ -197,7 +201,9 @@ TEST(RunScan, FailsWhenTheClipBoxHoldsNothing) {
   Rig rig(rig_of());
   ScanSettings settings = few_snapshots();
   settings.clip = {.min = {0.1, 0.1, 0.35}, .max = {0.12, 0.12, 0.39}};
-  EXPECT_EQ(code_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); }), "empty");
+  EXPECT_EQ(
+      code_thrown_by([&] { run_scan(settings, {}, folder.path(), *make_capture(rig), {}, {}); }),
+      "empty");
 }
 
 TEST(RunScan, FailsCleanlyWhenTheDiskIsFull) {
@@ -208,7 +214,7 @@ TEST(RunScan, FailsCleanlyWhenTheDiskIsFull) {
     ScanSettings settings = few_snapshots();
     settings.method = Method::intersection;  // its model is the larger one
     const Error error =
-        error_thrown_by([&] { run_scan(settings, {}, folder.path(), rig, {}, {}); });
+        error_thrown_by([&] { run_scan(settings, {}, folder.path(), *make_capture(rig), {}, {}); });
     EXPECT_EQ(error.code(), ErrorCode::disk_full) << bytes;
     ASSERT_TRUE(error.parameters().contains("path")) << error.what();
     EXPECT_TRUE(

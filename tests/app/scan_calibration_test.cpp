@@ -60,7 +60,7 @@ class ScanCalibrationTest : public ::testing::Test {
         .on_calibrated = [&](const ScanSolution& solution) { report_ = solution.report; },
         .on_rebuilt = [&](int snapshots) { rebuilt_.push_back(snapshots); }};
     report_.reset();
-    EXPECT_TRUE(run_scan(settings, {}, folder, rig, {}, observer));
+    EXPECT_TRUE(run_scan(settings, {}, folder, *make_capture(rig), {}, observer));
     return phases;
   }
 
@@ -185,12 +185,12 @@ TEST_F(ScanCalibrationTest, GivesTheSameModelWhereverItIsInterrupted) {
         stop.request_stop();
       }
     };
-    EXPECT_FALSE(
-        run_scan(settings, {}, folder_.path(), rig, stop.get_token(), {.on_progress = stop_there}));
+    EXPECT_FALSE(run_scan(settings, {}, folder_.path(), *make_capture(rig), stop.get_token(),
+                          {.on_progress = stop_there}));
     EXPECT_FALSE(fs::exists(folder_.path() / "Scan.stl")) << to_string(moment);
     EXPECT_EQ(read_scan(folder_.path()).solved.has_value(), moment != Phase::calibrating);
 
-    EXPECT_TRUE(run_scan(settings, {}, folder_.path(), rig, {}, {}));
+    EXPECT_TRUE(run_scan(settings, {}, folder_.path(), *make_capture(rig), {}, {}));
     EXPECT_TRUE(content_of(folder_.path() / "Scan.stl") == model) << to_string(moment);
     EXPECT_EQ(content_of(folder_.path() / "scan.json"), solved);
   }

@@ -23,7 +23,7 @@ TEST(ScanNews, AreWhatHasBecomeOfTheScans) {
             (Events{{"scan-finished", "1"}, {"scan-started", "2"}, {"scan-started", "3"}}));
 }
 
-TEST(ScanNews, AreNotWhatStaysOrGoes) {
+TEST(ScanNews, AreNotForUnchangedOrRemovedScans) {
   EXPECT_TRUE(events_of({{"1", JobState::failed}, {"2", JobState::finished}},
                         {{"1", JobState::failed}}, "2")
                   .empty());

@@ -116,7 +116,7 @@ TEST(SlowClient, IsToldThatItsBodyCameTooSlowly) {
   EXPECT_EQ(status, 408);
 }
 
-TEST(SlowReader, IsLeftThoughItTakesAByteNowAndThen) {
+TEST(SlowReader, IsDroppedEvenIfItReadsAByteNowAndThen) {
   std::atomic<bool> ended = false;
   const HttpServer server(
       {.address = "127.0.0.1", .port = 0, .request_timeout = 300ms}, [&](const Request& request) {

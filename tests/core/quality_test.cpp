@@ -60,6 +60,17 @@ TEST(Judge, AllowsForANoiseThatGrowsWithTheSquareOfTheDistance) {
   EXPECT_EQ(judge(scan, right_model()).verdict, Verdict::good);
 }
 
+TEST(Judge, AllowsForTheNoiseOfTheSensor) {
+  ScanFigures scan = right_scan();
+  scan.distance = 0.3;
+  scan.disagreement = 0.0015;
+  EXPECT_EQ(codes(judge(scan, right_model())), Codes{"stops-disagree"});
+  scan.sensor = sensor_traits("Intel RealSense D405");
+  EXPECT_EQ(judge(scan, right_model()).verdict, Verdict::good);
+  scan.disagreement = 0.0018;
+  EXPECT_EQ(codes(judge(scan, right_model())), Codes{"stops-disagree"});
+}
+
 TEST(Judge, CallsAModelBadIfTheStopsDisagreeMuch) {
   ScanFigures scan = right_scan();
   scan.disagreement = 0.004;
@@ -189,7 +200,7 @@ TEST(Judge, LooksForASideThatNobodySaw) {
 
 TEST(Judge, TellsOfFillFarFromEverythingThatWasSeen) {
   ScanFigures scan = right_scan();
-  scan.by_lines = true;
+  scan.sensor.sees_lines = true;
   scan.seen = {{0, 0, 0.02}, {0.03, 0, 0.02}};
   ModelReport model = right_model();
   model.places.unseen = {{0.055, 0, 0.02}, {-0.02, 0, 0.02}};  // 25 and 20 mm away
@@ -199,7 +210,7 @@ TEST(Judge, TellsOfFillFarFromEverythingThatWasSeen) {
   ASSERT_EQ(codes(quality), Codes{"filled-far"});
   EXPECT_EQ(quality.reasons[0].places, std::vector<Eigen::Vector3d>{model.places.unseen.back()});
   EXPECT_NEAR(std::get<double>(quality.reasons[0].parameters.at("fill_mm")), 60, 1e-9);
-  scan.by_lines = false;
+  scan.sensor.sees_lines = false;
   EXPECT_EQ(judge(scan, model), Quality{}) << "a depth sensor does not see below a ball";
 }
 

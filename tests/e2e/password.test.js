@@ -109,7 +109,7 @@ test('a password that is typed into the page is in force at once, and is not sen
   await page.reload();
   await getsInWhileAnotherGuesses(t, browser, scanner, page, password);
 
-  await page.getByRole('button', {name: 'Let everybody in'}).click();
+  await page.getByRole('button', {name: 'Remove the password'}).click();
   await page.getByText('Everybody in this network may use the scanner.').waitFor();
   assert.equal((await fetch(scanner.url)).status, 200);
 });

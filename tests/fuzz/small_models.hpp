@@ -40,7 +40,7 @@ inline void make_models(const Scan& scan, const SnapshotSource& snapshots) {
                                .leaf_size = 1.0 / 64,
                                .clip = model_clip(scan),
                                .placements = placements(scan)};
-    fit_to_sensor(options, scan);
+    fit_to_scan(options, scan);
     const auto reconstruction = make_reconstructor(options);
     reconstruction->add(snapshots);
     reconstruction->surface({}, [](std::span<const Facet> facets) {

@@ -155,7 +155,7 @@ Outcome scan(const LossyWire& wire) {
              return std::make_unique<WireSensor>(wire, sent);
            }});
   const ScanSettings settings{.snapshots = 8, .leaf_size = 0.002, .pose = PoseSource::configured};
-  const auto model = run_scan(settings, {}, folder.path(), rig, {}, {});
+  const auto model = run_scan(settings, {}, folder.path(), *make_capture(rig), {}, {});
   return {.error_mm = mean_error_mm(content_of(folder.path() / "Scan.stl")),
           .frames = sent,
           .verdict = model.value().quality.value().verdict};

@@ -89,7 +89,7 @@ function showHint({seen, moved}, rig) {
   if (!isIdle) {
     steady = steadyHint();
   }
-  const hint = isIdle && seen && rig ? steady(hintOf(seen, moved, rig.clip_mm)) : null;
+  const hint = isIdle && seen && rig ? steady(hintOf(seen, moved, rig)) : null;
   show(element('live-hint'), hint !== null);
   if (hint) {
     element('live-hint').dataset.tone = hint.tone;
@@ -99,7 +99,7 @@ function showHint({seen, moved}, rig) {
   }
 }
 
-/** @type {(brightness: Uint8Array) => void} */
+/** @type {ReturnType<typeof prepareDistance>} */
 let seeDistances = () => {};
 
 /** Why there is no picture, and what to do. What the panel beside it says is not said twice. @param {unknown} error */
@@ -123,7 +123,7 @@ async function showPicture() {
     if (reading.brightness) {
       show(element('live-lines'), rig !== null);
       rig && drawLines(element('live-lines'), rig);
-      seeDistances(reading.brightness);
+      seeDistances(reading.brightness, rig?.sensor);
       showHint(reading, rig);
     }
     return betweenPictures;

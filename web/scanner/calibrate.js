@@ -158,7 +158,7 @@ async function lookAtPicture() {
   }
   try {
     const [png, seen] = await Promise.all([api.preview(), requests.points()]);
-    await showPicture(png);
+    await showPicture(png, seen.sensor);
     showPoints(seen);
     return calibration?.run?.state === 'running' ? 1500 : 500;  // a turn needs the processor
   } catch (error) {

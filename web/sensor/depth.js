@@ -1,11 +1,11 @@
 // The depth picture in the page: its distances in words, its scale.
 
-import {brightnessOf, colour, colourOf, decoded, faintest, range} from './depth_picture.js';
+import {brightnessOf, colour, colourOf, decoded, faintest, far} from './depth_picture.js';
 import {fixed, text} from '../base/texts.js';
 
 /** @param {number | null} distance  metres @returns {string} for people */
 export const distanceText = (distance) => distance === null ? text('stage.no-reading') :
-  distance >= range.far - 0.01 ? text('stage.beyond', {distance: `${range.far} m`}) : `${fixed(100 * distance, distance < 1 ? 1 : 0)} cm`;
+  distance >= far - 0.01 ? text('stage.beyond', {distance: `${far} m`}) : `${fixed(100 * distance, distance < 1 ? 1 : 0)} cm`;
 
 /**
  * Draws a depth picture in colour.

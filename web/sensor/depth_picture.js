@@ -32,16 +32,17 @@ export function colour(pixels, chosen = null) {
   }
 }
 
-/** The picture's depth range, metres (API.md); brightness is linear in inverse depth between its ends. */
-export const range = {near: 0.45, far: 2};
+/** The far end of the picture's depth range, metres (API.md). */
+export const far = 2;
 
 /**
- * @param {number} brightness  0 to 255
+ * Brightness is linear in inverse depth between the ends of the picture's range (API.md).
+ * @param {number} brightness  0 to 255 @param {number} [nearest]  metres, of the sensor
  * @returns {number | null} metres, at most the picture's range; null without a reading
  */
-export function distanceOf(brightness) {
+export function distanceOf(brightness, nearest = 0.5) {
   const share = (brightness - faintest) / (255 - faintest);
-  return brightness === 0 ? null : 1 / (share * (1 / range.near - 1 / range.far) + 1 / range.far);
+  return brightness === 0 ? null : 1 / (share * (1 / (0.9 * nearest) - 1 / far) + 1 / far);
 }
 
 /** @param {Uint8ClampedArray} pixels  of a grey picture: red, green, blue, alpha */

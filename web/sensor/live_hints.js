@@ -6,6 +6,8 @@ import {text} from '../base/texts.js';
 
 /**
  * @typedef {import('./live_picture.js').Seen} Seen
+ * @typedef {import('./live_picture.js').Rig} Rig
+ * @typedef {import('./overlay.js').Sensor} Sensor
  * @typedef {{code: string, tone: 'good' | 'warn', text: string, detail: string}} Hint
  */
 
@@ -13,8 +15,6 @@ const limits = {
   read_share: 0.05,
   object: 40,           // pixels: a cube of 2 cm at 0.8 m has 60
   moved_share: 0.35,
-  nearest: 0.5,         // a Kinect v1's minimum range
-  distance: 1.2,        // a step of a Kinect's disparity is 4 mm there
   cut: 8,               // pixels
   beyond_share: 0.03,
   unread_share: 0.25,
@@ -22,25 +22,26 @@ const limits = {
 
 /**
  * Problems for a scan by the texts hint.CODE, worst first.
- * @param {Omit<Seen, 'inside'>} seen @param {number} moved_share @returns {[string, boolean][]}
+ * @param {Omit<Seen, 'inside'>} seen @param {number} moved_share @param {Sensor} sensor @returns {[string, boolean][]}
  */
-const troublesOf = (seen, moved_share) => [
+const troublesOf = (seen, moved_share, sensor) => [
   ['blind', seen.read_share < limits.read_share],
   ['moves', moved_share > limits.moved_share],
   ['empty', seen.object < limits.object],
-  ['too-near', seen.nearest < limits.nearest],
+  ['too-near', seen.nearest < sensor.nearest_m],
   ['cut-top', seen.cut.top > limits.cut],
   ['cut-side', seen.cut.side > limits.cut],
   ['turns-out', seen.beyond_share > limits.beyond_share],
   ['unread', seen.unread_share > limits.unread_share],
-  ['too-far', seen.distance > limits.distance],
+  ['too-far', seen.distance > sensor.farthest_m],
 ];
 
-/** @param {Omit<Seen, 'inside'>} seen @param {number} moved_share @param {number[]} clip_mm @returns {Hint} */
-export function hintOf(seen, moved_share, clip_mm) {
-  const [code] = troublesOf(seen, moved_share).find(([, isSo]) => isSo) ?? [];
+/** @param {Omit<Seen, 'inside'>} seen @param {number} moved_share @param {Pick<Rig, 'clip_mm' | 'sensor'>} rig @returns {Hint} */
+export function hintOf(seen, moved_share, {clip_mm, sensor}) {
+  const [code] = troublesOf(seen, moved_share, sensor).find(([, isSo]) => isSo) ?? [];
   if (code) {
-    const values = {distance: centimetres(code === 'too-near' ? seen.nearest : seen.distance), height: centimetres(clip_mm[5] / 1000)};
+    const values = {distance: centimetres(code === 'too-near' ? seen.nearest : seen.distance), height: centimetres(clip_mm[5] / 1000),
+      least: centimetres(sensor.nearest_m), from: centimetres(sensor.best_m[0]), to: centimetres(sensor.best_m[1])};
     return {code, tone: 'warn', text: text(`hint.${code}`, values), detail: text(`hint.${code}-detail`, values)};
   }
   const [width, height] = [seen.width_mm, seen.height_mm].map((value) => centimetres(Math.max(0.01, value / 1000)));

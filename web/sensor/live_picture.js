@@ -23,7 +23,9 @@ import {distanceOf} from './depth_picture.js';
 const clear_mm = 8;     // height above the space's floor; a pose 1 degree off lifts the platform's edge by 3 mm
 const oneSurface = 0.012;  // metres between neighbouring pixels of a surface; one step of the picture is 4 mm at 0.75 m
 const farthest = 24;    // brightness at the end of the range and beyond (API.md), so without a distance
-const distances = Float64Array.from({length: 256}, (_, brightness) => distanceOf(brightness) ?? 0);
+
+/** The distance of each brightness. @param {Sensor} sensor */
+const distancesOf = (sensor) => Float64Array.from({length: 256}, (_, brightness) => distanceOf(brightness, sensor.nearest_m) ?? 0);
 
 /** @param {Float64Array} sorted @param {number} share */
 const quantile = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))];
@@ -32,10 +34,11 @@ const quantile = (sorted, share) => sorted[Math.min(sorted.length - 1, Math.floo
  * Computes points of pixels. One array takes all of them in turn, as arrays for 76,800 pixels of each picture would keep
  * a phone busy.
  * @param {Uint8Array} brightness  of each pixel, row by row @param {number} width @param {Rig} rig
+ * @param {Float64Array} distances  of each brightness
  * @returns {(index: number, place: Float64Array) => void} sets `place` to the pixel's point in the platform's frame; NaN
  *     without a distance
  */
-function placesOf(brightness, width, {pose, sensor}) {
+function placesOf(brightness, width, {pose, sensor}, distances) {
   const step = sensor.width / width;
   return (index, place) => {
     const z = brightness[index] > farthest ? distances[brightness[index]] : NaN;
@@ -102,7 +105,8 @@ function unreadShare(brightness, isObject, width) {
  */
 export function seenOf(brightness, width, rig) {
   const clip = rig.clip_mm.map((value) => value / 1000);
-  const placeOf = placesOf(brightness, width, rig);
+  const distances = distancesOf(rig.sensor);
+  const placeOf = placesOf(brightness, width, rig, distances);
   const place = new Float64Array(3);
   const inside = new Uint8Array(brightness.length);
   const isObject = new Uint8Array(brightness.length);

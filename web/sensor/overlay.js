@@ -4,7 +4,10 @@ import {toSensor} from '../base/pose.js';
 
 /** @typedef {import('../base/pose.js').Matrix} Matrix */
 /** @typedef {import('../base/pose.js').Point} Point */
-/** @typedef {{width: number, height: number, fx: number, fy: number, cx: number, cy: number}} Sensor */
+/**
+ * @typedef {{width: number, height: number, fx: number, fy: number, cx: number, cy: number, nearest_m: number, best_m: number[], farthest_m: number}}
+ *     Sensor  its camera, and the distances at which it measures
+ */
 
 const nearest = 0.05;  // near clipping plane, metres in front of the sensor
 const ringSides = 72;

@@ -18,7 +18,7 @@ let arePlansHeld = false;  // during a drag in them
 /** @type {{pose: Matrix | null, clip_mm: number[], seen: import('../api/api_calibration.js').Points | null}} */
 const shown = {pose: null, clip_mm: [-140, -140, 5, 140, 140, 400], seen: null};
 
-/** @type {(brightness: Uint8Array) => void} */
+/** @type {ReturnType<typeof prepareDistance>} */
 let seeDistances = () => {};
 let isDue = false;
 
@@ -92,9 +92,9 @@ export function showPoints(seen) {
   redraw();
 }
 
-/** @param {Blob} png */
-export async function showPicture(png) {
-  seeDistances(await drawDepth(element('pose-depth'), png));
+/** @param {Blob} png @param {import('./overlay.js').Sensor} sensor */
+export async function showPicture(png, sensor) {
+  seeDistances(await drawDepth(element('pose-depth'), png), sensor);
   show(element('pose-no-picture'), false);
 }
 

@@ -24,12 +24,14 @@ export function drawLines(overlay, {pose, sensor, clip_mm}) {
 /**
  * Shows the distance at the pointer.
  * @param {HTMLElement} frame  around the picture @param {HTMLElement} label  inside the frame
- * @returns {(brightness: Uint8Array) => void} to be called with each new picture
+ * @returns {(brightness: Uint8Array, sensor?: import('./overlay.js').Sensor) => void} to be called with each new picture
  */
 export function prepareDistance(frame, label) {
   const canvas = part(frame, 'canvas');
   /** @type {Uint8Array | null} */
   let picture = null;
+  /** @type {number | undefined} metres */
+  let nearest;
   /** @type {[number, number] | null} pixel */
   let pointed = null;
 
@@ -37,7 +39,7 @@ export function prepareDistance(frame, label) {
     show(label, pointed !== null && picture !== null);
     if (pointed && picture) {
       const [x, y] = pointed;
-      setText(label, distanceText(distanceOf(picture[y * canvas.width + x])));
+      setText(label, distanceText(distanceOf(picture[y * canvas.width + x], nearest)));
     }
   };
   const point = (/** @type {PointerEvent} */ event) => {
@@ -55,8 +57,9 @@ export function prepareDistance(frame, label) {
     pointed = null;
     render();
   });
-  return (brightness) => {
+  return (brightness, sensor) => {
     picture = brightness;
+    nearest = sensor?.nearest_m;
     render();
   };
 }

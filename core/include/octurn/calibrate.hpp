@@ -109,6 +109,29 @@ struct LaserCalibration {
 LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Scan& scan,
                                   int threads, const std::stop_token& stop = {});
 
+/// Returns the part of an accepted report that scan.json stores.
+SolvedPose to_solved_pose(const CalibrationReport& report);
+
+/// Result of solving a stored scan.
+struct ScanSolution {
+  CalibrationReport report = {};
+  SolvedPose solved = {};      ///< the part that scan.json stores, if accepted
+  bool replaces_told = false;  ///< accepted, and differs from the configured pose or planes
+};
+
+/// Solves the sensor's pose of a stored scan from its snapshots, starting at the configured pose;
+/// of a laser-line scan, the lasers' planes as well.
+///
+/// @param snapshots  of the scan without a solved pose, whose optics would be in them; not read for
+///                   a laser-line scan
+/// @throws Error "scan-malformed"  if the scan is of several turns; errors of `snapshots`; Stopped
+ScanSolution solve_scan(const std::filesystem::path& folder, const Scan& scan,
+                        const SnapshotSource& snapshots, int threads, const std::stop_token& stop);
+
+/// Gives a scan the solved pose, and the angles at which its platform stood, if they replace the
+/// configured ones. @return whether they do
+bool take_solution(Scan& scan, const ScanSolution& solution);
+
 /// The plane of the platform's surface, in the platform frame of the configured pose.
 struct PlatformSurface {
   double height = 0;  ///< metres: z where the configured axis meets it

@@ -4,55 +4,21 @@
 #include <array>
 #include <cstdint>
 #include <filesystem>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <span>
 #include <stop_token>
 #include <vector>
 
+#include "octurn/calibrate.hpp"
 #include "octurn/png.hpp"
+#include "octurn/quality.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/stl.hpp"
 
 namespace octurn {
-
-class SurfaceCells;
-
-/// Coarse geometry of a model, for `judge`.
-struct ModelPlaces {
-  /// Metres, object's frame: where the surface above the base was made by hole filling.
-  std::vector<Eigen::Vector3d> unseen = {};
-  /// The cells of a grid that the surface passes through; null: no surface.
-  std::shared_ptr<const SurfaceCells> surface = {};
-};
-
-/// Connected components that were seen but left out of a model.
-struct DroppedParts {
-  std::uint64_t count = 0;
-  double volume = 0.0;  ///< cubic metres
-};
-
-/// The figures of a finished model.
-struct ModelReport {
-  std::uint64_t leaves = 0;  ///< occupied leaves; of the method `solid`, voxels inside
-  std::uint64_t triangles = 0;
-  std::uint64_t bytes = 0;  ///< of the STL
-  std::uint64_t parts = 0;  ///< connected components; 0: not counted
-  double filled_share = 0;  ///< of the area, made by hole filling, 0 to 1
-  double unseen_share = 0;  ///< the same without the base, the facets in z = 0
-  ModelPlaces places = {};
-  /// Whether the surface is closed. Of the method `solid` every directed edge is compared with its
-  /// opposite, corners bit by bit; of `intersection` the sides of neighbouring bricks of leaves,
-  /// inside which the surface is closed by construction. An open one is missed with a chance of
-  /// 2^-64.
-  bool watertight = false;
-  double volume = 0.0;  ///< cubic metres; right only if watertight
-  DroppedParts dropped = {};
-  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< metres, of the bounding box
-  double bottom = 0.0;                             ///< metres, lowest z of that box
-};
 
 /// @throws Error "empty"  if there is no facet
 void expect_facets(std::uint64_t facets);
@@ -75,6 +41,52 @@ std::optional<ModelReport> write_model(Reconstructor& reconstructor,
                                        const SnapshotSource& snapshots,
                                        const std::filesystem::path& file,
                                        const std::stop_token& stop);
+
+/// The steps of `build_model`.
+enum class BuildStep {
+  calibrating,  ///< solving the sensor's pose
+  adding,       ///< the snapshots
+  writing,      ///< the surface
+};
+
+/// What a stored scan's model is built of, and how.
+struct ModelInput {
+  std::filesystem::path folder = {};  ///< of the scan
+  Scan scan = {};                     ///< with the configured pose and the sensor map of the model
+  ReconstructOptions options = {};    ///< `build_model` adapts them by `fit_to_scan`
+  /// Whether the sensor's pose is solved for a scan of one turn that has no solved one.
+  bool solves_pose = true;
+  bool is_judged = true;
+  /// Of the calibration that gave the scan its solved pose; replaced if a pose is solved here.
+  std::vector<CalibrationFinding> findings = {};
+  std::optional<SolvedOptics> seen_optics = {};  ///< the same, for `expected_size_error`
+  std::filesystem::path spool = {};              ///< as in `make_tiled_reconstructor`
+  /// Reads the snapshots of the scan, before and after its pose is solved.
+  std::function<SnapshotSource(const Scan& scan)> snapshots = {};
+  /// Writes the surface, as `write_model` does. @return nothing if stopped, or if it is not
+  /// measured
+  std::function<std::optional<ModelReport>(Reconstructor& reconstructor,
+                                           const SnapshotSource& snapshots)>
+      write = {};
+  /// Called on any thread at the begin of each step, and for each snapshot that is added.
+  std::function<void(BuildStep step, int snapshots)> progress = [](BuildStep, int) {};
+};
+
+/// A model as `build_model` made it.
+struct BuiltModel {
+  Scan scan = {};                                     ///< with the pose that it was made with
+  std::optional<CalibrationReport> calibration = {};  ///< if the pose was solved for it
+  std::optional<ModelReport> report = {};             ///< if it was measured
+  std::optional<Quality> quality = {};  ///< if it was measured, and the scan is on a platform
+};
+
+/// Builds the model of a stored scan: solves the sensor's pose, reconstructs the surface by the
+/// options' method, writes it, and judges it. A scan with free poses is made tile by tile.
+/// @throws Stopped  if stopped before the model was written
+/// @throws Error    as `solve_scan`, `make_reconstructor`, `Reconstructor::add`, and as the
+/// functions
+///                  of the input
+BuiltModel build_model(ModelInput input, const std::stop_token& stop);
 
 /// A triangle mesh that shares its vertices.
 struct VertexMesh {

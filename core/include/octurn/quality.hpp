@@ -12,7 +12,7 @@
 
 #include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"
-#include "octurn/model.hpp"
+#include "octurn/reconstruct.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
 
@@ -70,6 +70,7 @@ struct BelowBox {
 
 /// Measurements on the depth images of a scan, with the poses and the clip box of its model.
 struct ScanFigures {
+  SensorTraits sensor = {};
   std::size_t stops = 0;
   double object_pixels = 0;  ///< mean number of readings inside the box at a stop
   double distance = 0;       ///< metres: mean distance of these readings from the sensor
@@ -89,7 +90,6 @@ struct ScanFigures {
   std::vector<Eigen::Vector3d> contradicted_places = {};
   /// Metres, object's frame: centres of 5 mm cells in which several stops saw the object.
   std::vector<Eigen::Vector3d> seen = {};
-  bool by_lines = false;  ///< whether the stops saw lines of lasers
   BelowBox below = {};
   /// Metres above the highest reading of the object: end of a hole in the readings, at most stops.
   double unseen_top = 0;
@@ -100,7 +100,7 @@ class ScanCheck {
  public:
   /// @param clip   metres, object's frame: the box that the model is clipped to
   /// @param stops  number of stops of the scan
-  ScanCheck(const Box& clip, std::size_t stops);
+  ScanCheck(const Box& clip, std::size_t stops, const SensorTraits& sensor = {});
   ~ScanCheck();
   ScanCheck(const ScanCheck&) = delete;
   ScanCheck& operator=(const ScanCheck&) = delete;
@@ -119,8 +119,32 @@ class ScanCheck {
 
  private:
   Box clip_;
+  SensorTraits sensor_;
   std::vector<std::unique_ptr<Stop>> stops_;
 };
+
+/// The same for a scan of several poses, each with its own platform frame and clip box.
+class PoseChecks {
+ public:
+  /// @param placements  one for each pose; empty: one pose with the clip box `clip`
+  /// @param stops       number of stops, of all poses together
+  PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops,
+             const SensorTraits& sensor);
+
+  /// Adds a stop's snapshot. Threads and errors are as of `ScanCheck::add`.
+  /// @param stop  index, below the number of stops
+  void add(std::size_t stop, const Snapshot& snapshot);
+
+  /// Returns the figures of each pose, with places in the object's frame.
+  std::vector<ScanFigures> figures(int threads) const;
+
+ private:
+  std::vector<Placement> placements_;
+  std::vector<std::unique_ptr<ScanCheck>> checks_;
+};
+
+/// Wraps a source: each snapshot that is read is also added to `checks`, which must outlive it.
+SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks);
 
 /// The expected size error of a model, from the sigmas of focal length and scale.
 /// @param size  of the model's bounding box, metres
@@ -145,5 +169,14 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
 /// @param findings  of the calibration from the first pose's depth images
 Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
               std::span<const CalibrationFinding> findings = {});
+
+/// Judges a finished model of a scan: as above, with the expected size error and "warm-up".
+/// @param checks    of the snapshots that the model was made of
+/// @param scan      with the pose that it was made with
+/// @param findings  of the calibration from the same depth images, and of the object's move
+/// @param seen      as in `expected_size_error`
+Quality judge(const PoseChecks& checks, int threads, const Scan& scan, const ModelReport& model,
+              std::span<const CalibrationFinding> findings,
+              const std::optional<SolvedOptics>& seen);
 
 }  // namespace octurn

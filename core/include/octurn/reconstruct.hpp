@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -47,8 +48,8 @@ std::string_view to_string(Parts parts);
 /// Options of the method `solid`, besides `ReconstructOptions::target_error`.
 struct SolidOptions {
   /// Metres: signed distances are integrated up to this far before and behind the surface. At least
-  /// 2.5 voxels, and 3 sigma of the sensor's noise: the default is a Kinect v1's at 0.65 m.
-  double truncation = 0.0035;
+  /// 2.5 voxels, and 3 sigma of the sensor's noise; see `SensorTraits`.
+  double truncation = SensorTraits{}.truncation;
 
   /// With several poses `main` is always used: the object that was turned over is one.
   Parts parts = Parts::main;
@@ -60,7 +61,7 @@ struct ReconstructOptions {
 
   /// Metres: maximum side of the leaves (voxels for `solid`), which is the root cube's side halved
   /// as often as needed.
-  double leaf_size = 0.001;
+  double leaf_size = SensorTraits{}.leaf_size;
 
   /// Metres: side of the root cube, which stands on the platform: x, y in [-side/2, side/2], z in
   /// [0, side].
@@ -85,7 +86,7 @@ struct ReconstructOptions {
   /// `solid` only: metres. Edges are collapsed while the root mean square distance of the new
   /// vertex from the planes of the triangles that it replaces is at most this; its distance from a
   /// single plane may be larger. 0 keeps all triangles.
-  double target_error = 0.00004;
+  double target_error = SensorTraits{}.target_error;
 
   SolidOptions solid = {};
 
@@ -98,16 +99,6 @@ struct ReconstructOptions {
   /// The part of `memory_limit` that the caller's program and its libraries take, bytes.
   std::size_t program_memory = 0;
 };
-
-/// `SolidOptions::truncation` of scans by laser line, metres. It follows from the spacing of the
-/// lines, one or two millimetres, and not from the noise, 0.05 to 0.2 mm: with a thinner band
-/// behind the surface inside cannot be known from outside between two lines.
-inline constexpr double laser_truncation = 0.002;
-
-/// Leaf size and target error of models of scans by laser line, metres: they are finer than a depth
-/// sensor's.
-inline constexpr double laser_leaf_size = 0.0005;
-inline constexpr double laser_target_error = 0.00001;
 
 /// The memory that a model needs.
 struct MemoryNeed {
@@ -132,7 +123,41 @@ struct SurfaceCount {
   std::uint64_t dropped_leaves = 0;  ///< their voxels
 };
 
-struct ModelReport;
+class SurfaceCells;
+
+/// Coarse geometry of a model, for `judge`.
+struct ModelPlaces {
+  /// Metres, object's frame: where the surface above the base was made by hole filling.
+  std::vector<Eigen::Vector3d> unseen = {};
+  /// The cells of a grid that the surface passes through; null: no surface.
+  std::shared_ptr<const SurfaceCells> surface = {};
+};
+
+/// Connected components that were seen but left out of a model.
+struct DroppedParts {
+  std::uint64_t count = 0;
+  double volume = 0.0;  ///< cubic metres
+};
+
+/// The figures of a finished model.
+struct ModelReport {
+  std::uint64_t leaves = 0;  ///< occupied leaves; of the method `solid`, voxels inside
+  std::uint64_t triangles = 0;
+  std::uint64_t bytes = 0;  ///< of the STL
+  std::uint64_t parts = 0;  ///< connected components; 0: not counted
+  double filled_share = 0;  ///< of the area, made by hole filling, 0 to 1
+  double unseen_share = 0;  ///< the same without the base, the facets in z = 0
+  ModelPlaces places = {};
+  /// Whether the surface is closed. Of the method `solid` every directed edge is compared with its
+  /// opposite, corners bit by bit; of `intersection` the sides of neighbouring bricks of leaves,
+  /// inside which the surface is closed by construction. An open one is missed with a chance of
+  /// 2^-64.
+  bool watertight = false;
+  double volume = 0.0;  ///< cubic metres; right only if watertight
+  DroppedParts dropped = {};
+  Eigen::Vector3d size = Eigen::Vector3d::Zero();  ///< metres, of the bounding box
+  double bottom = 0.0;                             ///< metres, lowest z of that box
+};
 
 /// A reconstruction in progress: snapshots are added, then the surface is drawn. Not thread-safe;
 /// each call runs and joins its own threads, as many as the options say.

@@ -118,9 +118,13 @@ std::vector<Placement> placements(const Scan& scan);
 /// @throws Error  as above
 Box model_clip(const Scan& scan);
 
-/// Adapts options to the scan's sensor: for a scan by laser line it sets the truncation, and adds
-/// the memory of its lines to `program_memory`.
-void fit_to_sensor(ReconstructOptions& options, const Scan& scan);
+/// The traits of the scan's sensor.
+const SensorTraits& sensor_traits(const Scan& scan);
+
+/// Adapts options to the scan: sets the placements of its poses and the sensor's truncation; for a
+/// scan by laser line it adds the memory of its lines to `program_memory`.
+/// @throws Error  as `model_pose`
+void fit_to_scan(ReconstructOptions& options, const Scan& scan);
 
 /// The options by which `octurn reconstruct` makes the scan's model, if it is given none: `solid`
 /// within the clip boxes of all poses, and finer by laser line. Like all models, it is made with

@@ -49,6 +49,36 @@ struct Intrinsics {
   bool operator==(const Intrinsics&) const = default;
 };
 
+/// What a kind of sensor can do. The defaults are a Kinect v1's, whose noise grows with the square
+/// of the distance.
+struct SensorTraits {
+  bool sees_lines = false;  ///< of lasers
+  double nearest = 0.5;     ///< metres: nearer surfaces have no readings
+  double best_near = 0.6;   ///< metres: where scans are most accurate
+  double best_far = 0.9;
+  double farthest = 1.2;  ///< metres: a step of depth is 4 mm there
+  /// Metres, at a distance of 1 m: above it, two stops disagree by more than noise explains. Those
+  /// of a correct rig disagree by 0.5 to 0.7 mm at 0.65 m.
+  double disagreement_at_1_m = 0.0026;
+  double noise_distance = 0.65;   ///< metres: closer, other errors are larger than the noise
+  double truncation = 0.0035;     ///< metres, for `SolidOptions::truncation`: 3 sigma of the noise
+  double leaf_size = 0.001;       ///< metres, of models
+  double target_error = 0.00004;  ///< metres, for `ReconstructOptions::target_error`
+  int stops = 36;                 ///< of a turn
+};
+
+/// Of a camera with line lasers. The truncation follows from the spacing of the lines, one or two
+/// millimetres, and not from the noise, 0.05 to 0.2 mm: with a thinner band behind the surface
+/// inside cannot be known from outside between two lines.
+inline constexpr SensorTraits laser_traits{.sees_lines = true,
+                                           .truncation = 0.002,
+                                           .leaf_size = 0.0005,
+                                           .target_error = 0.00001,
+                                           .stops = 200};
+
+/// The traits of a depth sensor. @param name  as OpenNI2 has it; a Kinect's for others
+const SensorTraits& sensor_traits(std::string_view name);
+
 /// The optics of one depth sensor as measured. They replace its data sheet's.
 ///
 /// Distortion is Brown's on normalised coordinates: what a pinhole camera would see at x appears at

@@ -46,8 +46,9 @@ double largest_eigenvalue(const Eigen::Matrix2d& symmetric) {
          std::hypot((symmetric(0, 0) - symmetric(1, 1)) / 2, symmetric(0, 1));
 }
 
-}  // namespace
-
+/// Moves a pose's axis, and its origin to the point where the axis meets the plane.
+/// @param pose    optical frame to platform frame
+/// @param motion  rotation about x and y (radians), translation along x and y (metres), both small
 Eigen::Isometry3d with_axis_moved(const Eigen::Isometry3d& pose, const PlatformPlane& plane,
                                   const Vector4d& motion) {
   const Vector3d rotation(motion[0], motion[1], 0);
@@ -63,6 +64,8 @@ Eigen::Isometry3d with_axis_moved(const Eigen::Isometry3d& pose, const PlatformP
   moved.translation().z() -= height;
   return moved;
 }
+
+}  // namespace
 
 double AxisSolution::position_sigma() const {
   Eigen::Matrix<double, 2, 4> at_lever = Eigen::Matrix<double, 2, 4>::Zero();

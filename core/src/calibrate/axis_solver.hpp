@@ -23,12 +23,6 @@ struct AxisSolution {
   double direction_sigma() const;  ///< radians
 };
 
-/// Moves a pose's axis, and its origin to the point where the axis meets the plane.
-/// @param pose    optical frame to platform frame
-/// @param motion  rotation about x and y (radians), translation along x and y (metres), both small
-Eigen::Isometry3d with_axis_moved(const Eigen::Isometry3d& pose, const PlatformPlane& plane,
-                                  const Eigen::Vector4d& motion);
-
 /// Solves the axis by Gauss-Newton over its direction and position, with Cauchy weights on the
 /// residuals. The height, which the plane determines, and the rotation about the axis, which
 /// nothing determines, stay.

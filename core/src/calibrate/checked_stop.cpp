@@ -246,7 +246,6 @@ ScanCheck::Stop::Stop(const Snapshot& snapshot, const Box& clip)
   for (const LineStrip& strip : snapshot.strips) {
     add_line(strip, clip);
   }
-  has_lines = !snapshot.strips.empty();
   keep_each_once(seen);
 }
 

@@ -58,9 +58,8 @@ struct ScanCheck::Stop {
   /// Metres, object's frame: pixels at which the box cuts, as in `ScanFigures::cut_pixels`.
   std::array<std::vector<Eigen::Vector3f>, 5> cut = {};
   std::vector<ObjectCell> seen = {};  ///< cells with readings of a surface inside the box
-  bool has_lines = false;
-  double unseen_top = 0;             ///< metres, as in `ScanFigures`
-  std::vector<std::size_t> heights;  ///< of readings near z = 0, a count for each step
+  double unseen_top = 0;              ///< metres, as in `ScanFigures`
+  std::vector<std::size_t> heights;   ///< of readings near z = 0, a count for each step
 
  private:
   Stop(const Snapshot& thin, const Box& clip, const ObjectView::Mask& mask);
@@ -78,6 +77,7 @@ struct StopComparison {
 };
 
 /// Compares each stop's readings of the object with the surfaces that neighbouring stops saw.
-StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops, int threads);
+StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops,
+                             const SensorTraits& sensor, int threads);
 
 }  // namespace octurn

@@ -20,8 +20,7 @@ constexpr double max_apart_deg = 50;
 
 constexpr double max_surface_distance = 0.02;  // metres: beyond it lies another surface
 constexpr double confirming_distance = 0.006;  // metres
-// Metres, at 1 m: 2.2 mm at 0.65 m, four times the distance between two stops by a Kinect's noise.
-constexpr double far_at_1_m = 0.0052;
+constexpr double far_disagreements = 2;        // four times the distance between two stops by noise
 
 /// The turn between two stops, radians.
 double turn_between(const ScanCheck::Stop& a, const ScanCheck::Stop& b) {
@@ -45,6 +44,7 @@ std::vector<std::size_t> find_partners(const std::vector<const ScanCheck::Stop*>
 
 /// Comparison of one stop's readings with the others'.
 struct Comparison {
+  double far_at_1_m = 0;  // metres: larger distances are not noise; they grow with the square
   std::vector<float> distances = {};
   std::vector<Vector3d> disagreeing = {};  // points of the object's frame
   std::vector<Vector3d> contradicted = {};
@@ -68,19 +68,20 @@ Agreement compare_reading(const ScanCheck::Stop& to, const Vector3d& point, cons
   const double distance = other.dot(point - to.object_from_sensor * surface->point);
   if (std::abs(distance) < max_surface_distance && other.dot(normal) > min_normal_agreement) {
     comparison.distances.push_back(static_cast<float>(std::abs(distance)));
-    if (std::abs(distance) > far_at_1_m * surface->point.z() * surface->point.z()) {
+    if (std::abs(distance) > comparison.far_at_1_m * surface->point.z() * surface->point.z()) {
       comparison.disagreeing.push_back(point);
     }
   }
   return std::abs(distance) < confirming_distance ? Agreement::confirmed : Agreement::unknown;
 }
 
-Comparison compare_stop(const std::vector<const ScanCheck::Stop*>& stops, std::size_t from) {
+Comparison compare_stop(const std::vector<const ScanCheck::Stop*>& stops, std::size_t from,
+                        const SensorTraits& sensor) {
   auto partners = find_partners(stops, from, min_apart_deg, max_apart_deg);
   if (partners.empty()) {
     partners = find_partners(stops, from, 0, max_neighbour_deg);
   }
-  Comparison comparison;
+  Comparison comparison{.far_at_1_m = far_disagreements * sensor.disagreement_at_1_m};
   for (const SurfaceReading& reading : stops[from]->readings) {
     const Vector3d point = stops[from]->object_from_sensor * reading.point;
     const Vector3d normal = stops[from]->object_from_sensor.linear() * reading.normal;
@@ -101,10 +102,11 @@ Comparison compare_stop(const std::vector<const ScanCheck::Stop*>& stops, std::s
 
 }  // namespace
 
-StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops, int threads) {
+StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops,
+                             const SensorTraits& sensor, int threads) {
   std::vector<Comparison> of_stops(stops.size());
   for_each_stop(stops.size(), threads,
-                [&](std::size_t stop) { of_stops[stop] = compare_stop(stops, stop); });
+                [&](std::size_t stop) { of_stops[stop] = compare_stop(stops, stop, sensor); });
   StopComparison all;
   std::vector<float> distances;
   Places disagreeing;

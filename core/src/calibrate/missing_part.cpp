@@ -14,11 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double max_gap = 0.006;        // metres at 0.65 m
-constexpr double noise_distance = 0.65;  // metres; a Kinect's noise grows with the square
-constexpr double voxels_of_gap = 2;      // lost by carving and simplification
-constexpr std::size_t min_cells = 6;     // 1.5 cm2: fewer are readings between two surfaces
-constexpr double min_length = 0.012;     // metres
+constexpr double max_gap = 0.006;     // metres, at the sensor's `noise_distance`
+constexpr double voxels_of_gap = 2;   // lost by carving and simplification
+constexpr std::size_t min_cells = 6;  // 1.5 cm2: fewer are readings between two surfaces
+constexpr double min_length = 0.012;  // metres
 
 /// Metres, a voxel's side. @return 0 for a model without any
 double voxel_side(const ModelReport& model) {
@@ -28,7 +27,7 @@ double voxel_side(const ModelReport& model) {
 
 /// Cells without any surface near.
 std::set<ObjectCell> find_bare_cells(const ScanFigures& scan, const ModelReport& model) {
-  const double scale = std::pow(std::max(scan.distance, noise_distance) / noise_distance, 2);
+  const double scale = std::pow(std::max(scan.distance / scan.sensor.noise_distance, 1.0), 2);
   const double gap = max_gap * scale + voxels_of_gap * voxel_side(model);
   std::set<ObjectCell> bare;
   for (const Vector3d& point : scan.seen) {

@@ -3,8 +3,8 @@
 #include <optional>
 #include <vector>
 
-#include "octurn/model.hpp"
 #include "octurn/quality.hpp"
+#include "octurn/reconstruct.hpp"
 
 namespace octurn {
 

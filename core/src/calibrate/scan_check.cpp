@@ -119,8 +119,8 @@ std::vector<Eigen::Vector3d> find_seen(const Stops& stops) {
 
 }  // namespace
 
-ScanCheck::ScanCheck(const Box& clip, std::size_t stops)
-    : clip_{.min = clip.min, .max = clip.max}, stops_(stops) {}
+ScanCheck::ScanCheck(const Box& clip, std::size_t stops, const SensorTraits& sensor)
+    : clip_{.min = clip.min, .max = clip.max}, sensor_(sensor), stops_(stops) {}
 
 ScanCheck::~ScanCheck() = default;
 
@@ -135,7 +135,7 @@ ScanFigures ScanCheck::figures(int threads) const {
       stops.push_back(stop.get());
     }
   }
-  ScanFigures figures{.stops = stops.size()};
+  ScanFigures figures{.sensor = sensor_, .stops = stops.size()};
   if (stops.empty()) {
     return figures;
   }
@@ -163,13 +163,62 @@ ScanFigures ScanCheck::figures(int threads) const {
   }
   figures.unseen_top = find_unseen_top(stops);
   figures.seen = find_seen(stops);
-  figures.by_lines = std::ranges::any_of(stops, &Stop::has_lines);
-  StopComparison comparison = compare_stops(stops, threads);
+  StopComparison comparison = compare_stops(stops, sensor_, threads);
   figures.disagreement = comparison.disagreement;
   figures.disagreeing_places = std::move(comparison.disagreeing_places);
   figures.contradicted = std::move(comparison.contradicted);
   figures.contradicted_places = std::move(comparison.contradicted_places);
   return figures;
+}
+
+PoseChecks::PoseChecks(std::vector<Placement> placements, const Box& clip, std::size_t stops,
+                       const SensorTraits& sensor)
+    : placements_(std::move(placements)) {
+  if (placements_.empty()) {
+    placements_.push_back({.clip = clip});
+  }
+  for (const Placement& placement : placements_) {
+    checks_.push_back(std::make_unique<ScanCheck>(placement.clip, stops, sensor));
+  }
+}
+
+void PoseChecks::add(std::size_t stop, const Snapshot& snapshot) {
+  const auto pose = static_cast<std::size_t>(snapshot.pose);
+  if (placements_[pose].object_from_platform.matrix().isIdentity(0)) {
+    checks_[pose]->add(stop, snapshot);
+    return;
+  }
+  Snapshot seen = snapshot;
+  seen.object_from_sensor =
+      placements_[pose].object_from_platform.inverse() * snapshot.object_from_sensor;
+  checks_[pose]->add(stop, seen);
+}
+
+std::vector<ScanFigures> PoseChecks::figures(int threads) const {
+  std::vector<ScanFigures> all;
+  for (std::size_t pose = 0; pose < checks_.size(); ++pose) {
+    ScanFigures figures = checks_[pose]->figures(threads);
+    const auto move = [&](std::vector<Eigen::Vector3d>& places) {
+      for (Eigen::Vector3d& place : places) {
+        place = placements_[pose].object_from_platform * place;
+      }
+    };
+    std::ranges::for_each(figures.cut_places, move);
+    move(figures.disagreeing_places);
+    move(figures.contradicted_places);
+    move(figures.seen);
+    all.push_back(std::move(figures));
+  }
+  return all;
+}
+
+SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks) {
+  const std::size_t count = snapshots.count;
+  return {.count = count, .read = [&checks, read = std::move(snapshots.read)](std::size_t shot) {
+            Snapshot snapshot = read(shot);
+            checks.add(shot, snapshot);
+            return snapshot;
+          }};
 }
 
 }  // namespace octurn

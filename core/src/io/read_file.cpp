@@ -71,7 +71,7 @@ std::optional<std::string> read_regular_file(const std::filesystem::path& file,
     if (content.size() > max_bytes) {
       throw Error(ErrorCode::file_too_large,
                   file.string() + ": larger than " + std::to_string(max_bytes) + " bytes",
-                  "Look for what has written it: such a file is far smaller.");
+                  "Such files are far smaller; check what wrote it.");
     }
   }
 }

@@ -45,7 +45,7 @@ double cauchy_weight(double residual, double scale) {
   return 1 / (1 + part * part);
 }
 
-/// The weight of a pair of points of two lasers, so far apart.
+/// Weight of a pair of points from two lasers; falls off with their distance.
 double weight_of_pair(const LinePoint& p, const LinePoint& q) {
   const double part = static_cast<double>((p.point - q.point).norm()) / crossing_reach;
   return 1 / (1 + part * part);

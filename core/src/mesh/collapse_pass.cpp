@@ -293,7 +293,7 @@ CollapsePass::Collapses CollapsePass::list_collapses(std::span<const MeshTriangl
   return collapses;
 }
 
-/// Where the vertex goes that two become. @param sum  of their quadrics
+/// Position of the merged vertex. @param sum  of the quadrics of both
 CollapsePass::Position CollapsePass::optimum(std::uint32_t a, std::uint32_t b,
                                              const Quadric& sum) const {
   const Vector3 from = position(a);

@@ -7,7 +7,6 @@
 
 #include "mesh/places.hpp"
 #include "mesh/surface_cells.hpp"
-#include "octurn/model.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/stl.hpp"

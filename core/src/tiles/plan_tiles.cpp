@@ -318,6 +318,10 @@ TileRoom room_for(const ReconstructOptions& options, const Tile& tile) {
   refuse(options, tile.index, tile_memory(options, tile));
 }
 
+namespace {
+
+/// The memory for drawing and simplifying a tile's surface by the method `solid`, bytes.
+/// @param bricks  of the tile, as in `TileBricks`
 std::size_t shell_surface_bytes(const ReconstructOptions& options,
                                 std::span<const TileBrick> bricks) {
   std::map<std::array<int, 3>, std::size_t> layers;  // bricks in each layer of each column
@@ -332,6 +336,8 @@ std::size_t shell_surface_bytes(const ReconstructOptions& options,
   return bricks.size() * sizeof(ShellBrick) + width * width * height / 8 +
          std::max(window_bytes, largest * layer_brick_bytes);
 }
+
+}  // namespace
 
 void expect_surface_room(const ReconstructOptions& options, const TileIndex& tile,
                          std::span<const TileBrick> bricks) {

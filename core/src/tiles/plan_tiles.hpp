@@ -29,11 +29,6 @@ struct TileRoom {
 /// @throws Error "memory-limit"  if it does not fit with one thread
 TileRoom room_for(const ReconstructOptions& options, const Tile& tile);
 
-/// The memory for drawing and simplifying a tile's surface by the method `solid`, bytes.
-/// @param bricks  of the tile, as in `TileBricks`
-std::size_t shell_surface_bytes(const ReconstructOptions& options,
-                                std::span<const TileBrick> bricks);
-
 /// @throws Error "memory-limit"  if the limit has no room for the surface of a tile
 void expect_surface_room(const ReconstructOptions& options, const TileIndex& tile,
                          std::span<const TileBrick> bricks);

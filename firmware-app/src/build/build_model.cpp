@@ -1,19 +1,19 @@
 #include "build/build_model.hpp"
 
 #include <algorithm>
-#include <atomic>
+#include <array>
 #include <chrono>
 #include <limits>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <utility>
 
-#include "calibration/solve_pose.hpp"
 #include "capture/last_look.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
+#include "octurn/model.hpp"
 #include "octurn/scan_folder.hpp"
 #include "settings/field.hpp"
 #include "store/job_file.hpp"
@@ -38,85 +38,60 @@ std::vector<CalibrationFinding> calibration_findings(const Job& job) {
   return job.calibration ? job.calibration->findings : std::vector<CalibrationFinding>{};
 }
 
-/// Solves the sensor's pose if the settings ask for it and the scan has no solved pose.
-/// @param[out] build  gets the calibration
-/// @return the findings of the calibration; those of the scan's own if its solved pose is reused
-std::vector<CalibrationFinding> solve(Scan& scan, Build& build, const BuildInput& input,
-                                      int threads, const std::stop_token& stop,
-                                      const BuildProgress& progress) {
-  if (scan.solved) {
-    return calibration_findings(input.job);
-  }
-  if (input.settings.scan.pose != PoseSource::solved || !is_one_turn(scan)) {
-    return {};
-  }
-  progress(Phase::calibrating, 0);
-  const ScanSolution solution =
-      solve_scan(input.folder, scan, readable_snapshots(input.folder, scan, stop), threads, stop);
-  throw_if_stopped(stop);
-  build.calibration = to_scan_calibration(solution.report);
-  take_solution(scan, solution);
-  return solution.report.findings;
+Phase to_phase(BuildStep step) {
+  constexpr std::array phases{Phase::calibrating, Phase::rebuilding, Phase::building};
+  return phases[static_cast<std::size_t>(step)];
 }
 
-/// Wraps a source: reports the number of snapshots read so far to `progress`.
-SnapshotSource counted(SnapshotSource snapshots, const BuildProgress& progress) {
-  const auto done = std::make_shared<std::atomic<int>>(0);
-  const auto count = static_cast<int>(snapshots.count);
-  return {.count = snapshots.count,
-          .read = [done, count, progress, read = std::move(snapshots.read)](std::size_t shot) {
-            Snapshot snapshot = read(shot);
-            progress(Phase::rebuilding, std::min(++*done, count));
-            return snapshot;
-          }};
+/// Returns what is known of the scan's own calibration, or of those of all poses' scans.
+std::vector<CalibrationFinding> known_findings(const BuildInput& input, const Scan& scan) {
+  return input.findings ? *input.findings
+         : scan.solved  ? calibration_findings(input.job)
+                        : std::vector<CalibrationFinding>();
 }
 
-}  // namespace
-
+/// Returns the findings of a scan's calibration and of its last look.
+/// @param folder  of the scan. @throws Error  as `read_scan`
 std::vector<CalibrationFinding> scan_findings(const Job& job, const std::filesystem::path& folder) {
   auto findings = calibration_findings(job);
   add_stored_move(folder, findings);
   return findings;
 }
 
+}  // namespace
+
 std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
                                  const std::filesystem::path& file, const std::stop_token& stop,
                                  const BuildProgress& progress) try {
   const Clock::time_point begin = Clock::now();
   const BuildSettings& settings = input.settings;
-  Build build{.settings = settings};
   Scan scan = scan_to_build(input.folder, settings);
-  const auto all = static_cast<int>(scan.shots.size());
-  auto findings = input.findings;
-  if (!findings) {
-    findings = solve(scan, build, input, limits.threads, stop, progress);
-    add_stored_move(input.folder, *findings);
-  }
-
   ReconstructOptions options = checked_options(settings.scan, limits, scan.shots.size());
   options.level = settings.level;
   options.clip = choose_clip(scan, input);
-  options.placements = placements(scan);
-  fit_to_sensor(options, scan);
-  PoseChecks checks(options.placements, options.clip, scan.shots.size());
-  const SnapshotSource stored = readable_snapshots(input.folder, scan, stop);
-  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
-  progress(Phase::rebuilding, 0);
-  reconstruction->add(counted(checked_snapshots(stored, checks), progress), stop);
-  progress(Phase::building, all);
-  auto report = write_model(*reconstruction, stored, file, stop);
-  if (!report) {
-    return std::nullopt;
+  const auto& calibration = input.job.calibration;
+  ModelInput model{
+      .folder = input.folder,
+      .options = std::move(options),
+      .solves_pose = !input.findings && settings.scan.pose == PoseSource::solved,
+      .findings = known_findings(input, scan),
+      .seen_optics = calibration ? calibration->optics : std::optional<SolvedOptics>(),
+      .snapshots = [&](const Scan& posed) { return readable_snapshots(input.folder, posed, stop); },
+      .write =
+          [&](Reconstructor& reconstructor, const SnapshotSource& snapshots) {
+            return write_model(reconstructor, snapshots, file, stop);
+          },
+      .progress = [&](BuildStep step, int done) { progress(to_phase(step), done); }};
+  model.scan = std::move(scan);
+  BuiltModel built = build_model(std::move(model), stop);
+  built.report->places = {};  // dropped: every request for a job's state copies it
+  Build build{.settings = settings};
+  if (built.calibration) {
+    build.calibration = to_scan_calibration(*built.calibration);
   }
-  Quality quality = judge(checks.figures(limits.threads), *report, *findings);
-  const auto& calibration = build.calibration ? build.calibration : input.job.calibration;
-  quality.size_error = expected_size_error(
-      scan, report->size, calibration ? calibration->optics : std::optional<SolvedOptics>());
-  add_warm_up(quality, scan);
-  report->places = {};  // dropped: every request for a job's state copies it
-  build.model = {.report = *std::move(report),
+  build.model = {.report = *std::move(built.report),
                  .build_time = Clock::now() - begin,
-                 .quality = std::move(quality)};
+                 .quality = std::move(built.quality)};
   return build;
 } catch (const Stopped&) {
   return std::nullopt;

@@ -26,10 +26,6 @@ struct BuildInput {
   std::optional<std::vector<CalibrationFinding>> findings = {};
 };
 
-/// Returns the findings of a scan's calibration and of its last look.
-/// @param folder  of the scan. @throws Error  as `read_scan`
-std::vector<CalibrationFinding> scan_findings(const Job& job, const std::filesystem::path& folder);
-
 /// Called on any thread with the phase of a build and the number of snapshots read.
 using BuildProgress = std::function<void(Phase phase, int snapshots_done)>;
 

@@ -47,12 +47,17 @@ std::filesystem::path colours_file(const std::filesystem::path& model, Colours s
   return model.parent_path() / (shown == Colours::views ? "views.rgb" : "colours.rgb");
 }
 
+namespace {
+
+/// Refuses a scan that is not by laser line. @throws Error "bad-settings"
 void expect_pictures(const Scan& scan) {
   if (!scan.laser) {
     throw Error(ErrorCode::bad_settings, "the scan has no pictures, and so no colours",
                 "Only a scan by laser line has them.");
   }
 }
+
+}  // namespace
 
 void colour_model(const std::filesystem::path& model, const ModelScan& of, Colours shown,
                   std::size_t memory_limit, const std::stop_token& stop) {

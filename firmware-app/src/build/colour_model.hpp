@@ -19,9 +19,6 @@ enum class Colours {
 /// of a `VertexTable`.
 std::filesystem::path colours_file(const std::filesystem::path& model, Colours shown);
 
-/// Refuses a scan that is not by laser line. @throws Error "bad-settings"
-void expect_pictures(const Scan& scan);
-
 /// Computes the colours from the model's scan, and writes that file atomically.
 /// @param memory_limit  bytes, of this process; 0: none
 /// @throws Error "bad-settings"  if the scan is of the other kind

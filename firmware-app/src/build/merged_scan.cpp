@@ -7,7 +7,6 @@
 #include <system_error>
 #include <utility>
 
-#include "calibration/solve_pose.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"
 #include "octurn/units.hpp"
@@ -370,6 +369,67 @@ void write_merged_scan(const fs::path& folder, const std::vector<StoredTurn>& tu
     fs::remove_all(temporary, ignored);
     throw;
   }
+}
+
+namespace {
+
+using Eigen::Isometry3d;
+using Eigen::Vector3d;
+
+constexpr double max_sigmas = 3;  // maximum distance of a turn from the mean
+
+/// A rotation vector and a shift.
+struct SmallMotion {
+  Vector3d rotation = Vector3d::Zero();  // radians
+  Vector3d shift = Vector3d::Zero();     // metres
+};
+
+SmallMotion motion_between(const Isometry3d& from, const Isometry3d& to) {
+  const Isometry3d between = to * from.inverse();
+  const Eigen::AngleAxisd turn(between.linear());
+  return {.rotation = turn.angle() * turn.axis(), .shift = between.translation()};
+}
+
+Isometry3d moved(const Isometry3d& pose, const SmallMotion& motion) {
+  const double angle = motion.rotation.norm();
+  Isometry3d by = Isometry3d::Identity();
+  if (angle > 0) {
+    by.linear() = Eigen::AngleAxisd(angle, motion.rotation / angle).toRotationMatrix();
+  }
+  by.translation() = motion.shift;
+  return by * pose;
+}
+
+}  // namespace
+
+std::optional<Isometry3d> shared_pose(std::span<const SolvedPose> turns) {
+  if (turns.size() < 2) {
+    return std::nullopt;
+  }
+  const Isometry3d& first = turns.front().platform_from_sensor;
+  SmallMotion mean;
+  double rotation_weight = 0;
+  double shift_weight = 0;
+  for (const SolvedPose& turn : turns) {
+    const SmallMotion motion = motion_between(first, turn.platform_from_sensor);
+    const double of_rotation = 1 / (turn.direction_sigma * turn.direction_sigma);
+    const double of_shift = 1 / (turn.position_sigma * turn.position_sigma);
+    mean.rotation += of_rotation * motion.rotation;
+    mean.shift += of_shift * motion.shift;
+    rotation_weight += of_rotation;
+    shift_weight += of_shift;
+  }
+  mean.rotation /= rotation_weight;
+  mean.shift /= shift_weight;
+  const Isometry3d pose = moved(first, mean);
+  for (const SolvedPose& turn : turns) {
+    const SmallMotion off = motion_between(pose, turn.platform_from_sensor);
+    if (!(off.rotation.norm() <= max_sigmas * turn.direction_sigma &&
+          off.shift.norm() <= max_sigmas * turn.position_sigma)) {
+      return std::nullopt;
+    }
+  }
+  return pose;
 }
 
 namespace {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -87,6 +88,11 @@ void write_merged_scan(const std::filesystem::path& folder, const std::vector<St
 /// configured pose stays if the solution is refused or confirms it. A turn that is registered
 /// already keeps the pose with which it was. Turns of one rig share the mean of their solved poses.
 void solve_rigs(std::vector<StoredTurn>& turns, int threads, const std::stop_token& stop);
+
+/// Returns the pose of a rig that did not move between turns: the mean of the turns' solved poses,
+/// weighted by 1 / sigma^2.
+/// @return nullopt for fewer than two turns, or if one is more than three sigmas off the mean
+std::optional<Eigen::Isometry3d> shared_pose(std::span<const SolvedPose> turns);
 
 /// A file for display in the folder of another pose's scan: samples of the points of this scan and
 /// of the earlier ones.

@@ -22,7 +22,7 @@ struct TimedPicture {
   std::chrono::steady_clock::time_point begin = {};
 };
 
-/// How a camera is to look. Nothing of it changes while a scan runs.
+/// Capture settings, fixed for the duration of a scan.
 struct CameraSettings {
   int width = 0;                               ///< pixels, of the configured lens
   int height = 0;                              ///< pixels
@@ -41,7 +41,7 @@ class Camera {
 
   virtual const std::string& name() const = 0;
 
-  /// What tells this camera from others of its kind; empty if that is not known.
+  /// Serial number, or another stable identifier; empty if it is unknown.
   virtual std::string serial() const = 0;
 
   /// Waits for the next picture.
@@ -49,7 +49,7 @@ class Camera {
   /// @throws Error "sensor-silent" if none comes, "sensor-lost" if the device is gone
   virtual std::optional<TimedPicture> read(const std::stop_token& stop) = 0;
 
-  /// The same, with its colours. A camera without any needs none of its own.
+  /// As `read`, with colours. The default returns grey pictures only.
   virtual std::optional<TimedPicture> read_in_colour(const std::stop_token& stop);
 
   /// The time by the clock that tells when its pictures begin: the steady one, unless a test has
@@ -63,7 +63,7 @@ class Camera {
   virtual void show_angle(double angle);
 
   /// Turns the object of a simulated camera over. Others ignore it: a person does it.
-  /// @param pose  which way it lies, 0: as it stood at first
+  /// @param pose  index of the object's placement; 0 is the initial one
   virtual void set_object_pose(int pose);
 
   /// Waves a printed board before a simulated camera. Others ignore it: a person does it.

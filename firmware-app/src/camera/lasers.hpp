@@ -11,10 +11,9 @@
 
 namespace octurn {
 
-/// The line lasers of a rig. They are off, but for one while a `Light` of it lives: at the start,
-/// between pictures, after whatever leaves a scan, and at the end of this object. At the end of the
-/// program, however it ends, the kernel releases their lines, and the resistors at them keep the
-/// lasers off.
+/// The line lasers of a rig. At most one is on, for the lifetime of a `Light`; all others are off,
+/// also after an exception. When the program ends, however it ends, the kernel releases their
+/// lines, and the resistors at them keep the lasers off.
 class Lasers {
  public:
   /// Sets the line of a laser. Its copies hold the lines: the end of the last one releases them.

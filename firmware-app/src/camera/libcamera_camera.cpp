@@ -187,8 +187,7 @@ using std::chrono::steady_clock;
 constexpr auto longest_silence = std::chrono::seconds(2);
 constexpr const char* again = "Unplug the camera, and plug it in again.";
 
-/// Nanoseconds by the clock that counts from the machine's start, as that of the steady clock,
-/// which stands still while the machine sleeps.
+/// Converts CLOCK_BOOTTIME to the steady clock (CLOCK_MONOTONIC), which stops during suspend.
 steady_clock::time_point from_boot_time(std::int64_t nanoseconds) {
   timespec boot{};
   ::clock_gettime(CLOCK_BOOTTIME, &boot);

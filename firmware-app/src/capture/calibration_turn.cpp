@@ -8,11 +8,11 @@
 
 #include "calibration/lens_files.hpp"
 #include "calibration/sensor_map_files.hpp"
-#include "calibration/solve_pose.hpp"
 #include "capture/plan.hpp"
 #include "capture/scan_of_rig.hpp"
 #include "capture/take_depth_image.hpp"
 #include "capture/take_pictures.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/optics_json.hpp"
 #include "octurn/snapshot.hpp"
 #include "octurn/units.hpp"
@@ -30,14 +30,15 @@ constexpr double bottom = -0.02;
 constexpr double top = 0.4;
 constexpr std::size_t max_points = 3000;  // enough for a picture of some hundred pixels
 
-}  // namespace
-
+/// Adds a point if it lies in the slice. @param point  metres, object's frame
 void add_to_slice(Slice& slice, const Eigen::Vector3d& point) {
   if (std::abs(point.y()) <= half_thickness && std::abs(point.x()) <= radius &&
       point.z() >= bottom && point.z() <= top) {
     slice.emplace_back(point.x(), point.z());
   }
 }
+
+}  // namespace
 
 Slice thinned(const Slice& slice) {
   const std::size_t step = slice.size() / max_points + 1;
@@ -246,8 +247,10 @@ std::optional<TurnReport> measure_laser_turn(const ScanSettings& settings, const
   const FolderOfTurn folder(data);
   Turntable& turntable = rig.turntable();
   const int steps = turntable.steps_per_turn();
-  Scan scan = scan_of_rig(rig, settings);
-  begin_scan(scan, settings, folder.path(), rig);
+  fs::create_directories(folder.path());
+  Scan scan = scan_of_lasers(rig, settings);
+  scan.sensor_name = rig.camera().name();
+  scan.sensor_serial = rig.camera().serial();
   for (const std::int64_t position :
        stop_positions(turntable.position(), steps, settings.snapshots)) {
     const Stop at{.index = static_cast<int>(scan.shots.size()), .position = position};
@@ -255,6 +258,7 @@ std::optional<TurnReport> measure_laser_turn(const ScanSettings& settings, const
     if (!take_stop(rig, at, angle, folder.path(), scan, stop, observer)) {
       return std::nullopt;
     }
+    observer.on_progress(Phase::capturing, static_cast<int>(scan.shots.size()));
   }
   observer.on_progress(Phase::calibrating, settings.snapshots);
   return solve_turn(folder.path(), scan, threads, stop);

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "calibration/solve_pose.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/png.hpp"
 #include "octurn/reconstruct.hpp"
 #include "store/job.hpp"

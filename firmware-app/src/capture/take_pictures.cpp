@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 // 30 Hz.
 constexpr int max_stale_pictures = 30;
 
-// Light that hides lines: a quarter of the picture is nearly as bright as a camera tells.
+// Too bright to see a line: a quarter of the pixels is near saturation.
 constexpr std::uint8_t white = 240;
 constexpr double max_white_share = 0.25;
 
@@ -176,7 +176,6 @@ bool take_stop(Rig& rig, const Stop& at, double angle, const std::filesystem::pa
   }
   writer.finish();
   store_stop(folder, scan, angle);
-  observer.on_progress(Phase::capturing, static_cast<int>(scan.shots.size()));
   return true;
 }
 

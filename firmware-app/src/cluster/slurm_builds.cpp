@@ -180,11 +180,15 @@ void Slurm::cancel(const std::string& id, const std::stop_token& stop) const {
   run({scancel, id}, stop);
 }
 
+namespace {
+
+/// Explains why a job waits, for people.
 std::string describe_wait(const SlurmJob& job) {
   const auto* const found = std::ranges::find(reasons, job.reason, &Meaning::word);
   return found != reasons.end() ? found->text : "Slurm: " + job.reason;
 }
 
+/// Explains by Slurm's state why an ended job left no model.
 Failure describe_end(const SlurmJob& job) {
   const auto* const found = std::ranges::find(ends, job.state, &End::state);
   if (found != ends.end()) {
@@ -198,8 +202,6 @@ Failure describe_end(const SlurmJob& job) {
                     (job.reason == "None" ? "" : ", " + job.reason),
           .hint = "Look into slurmd's log of the job's machine, and build again."};
 }
-
-namespace {
 
 namespace fs = std::filesystem;
 

@@ -64,12 +64,6 @@ struct Slurm {
   void cancel(const std::string& id, const std::stop_token& stop) const;
 };
 
-/// Explains why a job waits, for people.
-std::string describe_wait(const SlurmJob& job);
-
-/// Explains by Slurm's state why an ended job left no model.
-Failure describe_end(const SlurmJob& job);
-
 /// Options of builds by Slurm.
 struct SlurmOptions {
   Slurm slurm = {};

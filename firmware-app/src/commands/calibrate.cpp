@@ -14,7 +14,6 @@
 #include "calibration/board_pdf.hpp"
 #include "calibration/lens_files.hpp"
 #include "calibration/sensor_map_files.hpp"
-#include "calibration/solve_pose.hpp"
 #include "commands/commands.hpp"
 #include "octurn/error.hpp"
 #include "octurn/file.hpp"

@@ -1,3 +1,4 @@
+#include <array>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -213,14 +214,22 @@ std::filesystem::path spool_path(const std::filesystem::path& output) {
   return output.has_parent_path() ? output.parent_path() : std::filesystem::path(".");
 }
 
-Quality judge_and_print(const std::vector<ScanFigures>& poses, const Scan& scan,
-                        const ModelReport& report,
-                        const std::vector<CalibrationFinding>& findings) {
-  Quality quality = judge(poses, report, findings);
-  quality.size_error = expected_size_error(scan, report.size);
-  add_warm_up(quality, scan);
-  print_verdict(quality);
-  return quality;
+/// Writes the surface. @param measured  whether it is measured on the way
+std::optional<ModelReport> write_surface(Reconstructor& reconstructor,
+                                         const SnapshotSource& snapshots,
+                                         const std::filesystem::path& file, bool measured,
+                                         const std::stop_token& stop) {
+  ModelOutput output(file, [&] { return reconstructor.count(snapshots, stop).facets; });
+  const auto write = [&](std::span<const Facet> facets) { output.write(facets); };
+  std::optional<ModelReport> report;
+  if (measured) {
+    report = reconstructor.measured_surface(snapshots, write, stop);
+    expect_facets(report->triangles);
+  } else {
+    expect_facets(reconstructor.surface(snapshots, write, stop).facets);
+  }
+  output.commit();
+  return report;
 }
 
 }  // namespace
@@ -228,58 +237,51 @@ Quality judge_and_print(const std::vector<ScanFigures>& poses, const Scan& scan,
 void reconstruct(const ReconstructArguments& arguments) try {
   const SignalStop signal;
   const std::stop_token stop = signal.token();
-  const auto [settings, scan, findings, options] = read_input(arguments, stop);
+  auto [settings, input] = read_input(arguments);
   std::optional<ColouredModel> coloured;
   if (arguments.colour) {
-    coloured.emplace(arguments.output, scan);
+    coloured.emplace(arguments.output, input.scan);
   }
-  const bool is_tiled = has_free_poses(scan);
-  const std::unique_ptr<Reconstructor> reconstruction =
-      is_tiled ? make_tiled_reconstructor(options, spool_path(arguments.output))
-               : make_reconstructor(options);
-  std::optional<PoseChecks> scan_checks;  // of scans on a platform, if somebody reads the verdict
-  std::optional<ModelReport> report;
+  input.spool = spool_path(arguments.output);
+  BuiltModel built;
+  std::array<Clock::time_point, 3> begun{};  // of each step
   Times times;
   {
     ProgressBar bar;
-    const bool is_reported = arguments.json || bar.on_terminal();
-    if (is_reported && !is_tiled) {
-      scan_checks.emplace(options.placements, options.clip, scan.shots.size());
-    }
-    SnapshotSource snapshots = shown_snapshots(arguments.folder, scan, bar, stop);
-    if (scan_checks) {
-      snapshots = checked_snapshots(std::move(snapshots), *scan_checks);
-    }
-    const Clock::time_point start = Clock::now();
-    reconstruction->add(snapshots, stop);
-    const Clock::time_point seen = Clock::now();
-    bar.show(static_cast<int>(snapshots.count), static_cast<int>(snapshots.count), "surface");
-    ModelOutput output(coloured ? coloured->stl() : arguments.output,
-                       [&] { return reconstruction->count(snapshots, stop).facets; });
-    const auto write = [&](std::span<const Facet> facets) { output.write(facets); };
-    if (is_reported) {
-      report = reconstruction->measured_surface(snapshots, write, stop);
-      expect_facets(report->triangles);
-    } else {
-      expect_facets(reconstruction->surface(snapshots, write, stop).facets);
-    }
-    output.commit();
+    input.is_judged = arguments.json || bar.on_terminal();
+    input.snapshots = [&](const Scan& scan) {
+      return shown_snapshots(arguments.folder, scan, bar, stop);
+    };
+    input.progress = [&](BuildStep step, int done) {
+      if (step == BuildStep::writing) {
+        bar.show(done, done, "surface");
+      }
+      if (step == BuildStep::writing || done == 0) {
+        begun[static_cast<std::size_t>(step)] = Clock::now();
+      }
+    };
+    input.write = [&, measured = input.is_judged](Reconstructor& reconstructor,
+                                                  const SnapshotSource& snapshots) {
+      return write_surface(reconstructor, snapshots, coloured ? coloured->stl() : arguments.output,
+                           measured, stop);
+    };
+    built = build_model(std::move(input), stop);
     if (coloured) {
-      coloured->write(arguments.folder, scan, stop);
+      coloured->write(arguments.folder, built.scan, stop);
     }
-    times = {.snapshots = seen - start, .surface = Clock::now() - seen};
+    times = {.snapshots = begun[2] - begun[1], .surface = Clock::now() - begun[2]};
   }
-  std::optional<Quality> quality;
-  if (scan_checks) {
-    quality = judge_and_print(scan_checks->figures(options.threads), scan, *report, findings);
+  if (built.quality) {
+    print_verdict(*built.quality);
   }
   std::optional<ViewAgreement> agreement;
-  if (report && is_tiled) {
-    agreement = compare_views(spread_views(stored_snapshots(arguments.folder, scan)));
+  if (built.report && has_free_poses(built.scan)) {
+    agreement = compare_views(spread_views(stored_snapshots(arguments.folder, built.scan)));
     print_agreement(*agreement);
   }
   if (arguments.json) {
-    print_report(arguments.output, to_json(*report, quality, agreement, settings, times).dump());
+    print_report(arguments.output,
+                 to_json(*built.report, built.quality, agreement, settings, times).dump());
   }
 } catch (const Stopped&) {
   throw_stopped("no model was written");

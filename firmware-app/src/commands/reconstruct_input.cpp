@@ -3,8 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "calibration/solve_pose.hpp"
-#include "capture/last_look.hpp"
 #include "commands/options.hpp"
 #include "process.hpp"
 #include "settings/field.hpp"
@@ -29,19 +27,11 @@ ModelSettings settings_from(const nlohmann::json& given, const Scan& scan) {
   return settings;
 }
 
-ReconstructOptions options_from(const ModelSettings& settings, const Scan& scan) {
+ReconstructOptions options_from(const ModelSettings& settings) {
   ReconstructOptions options = reconstruct_options(settings.scan, settings.limits);
   options.level = settings.level;
-  options.placements = placements(scan);
-  fit_to_sensor(options, scan);
   return options;
 }
-
-/// A scan with the pose that its model is made with, and the findings of its calibration.
-struct PosedScan {
-  Scan scan = {};
-  std::vector<CalibrationFinding> findings = {};
-};
 
 void take_told_poses(Scan& scan) {
   scan.solved.reset();
@@ -51,24 +41,6 @@ void take_told_poses(Scan& scan) {
   for (ScanPose& pose : scan.poses) {
     pose.solved.reset();
   }
-}
-
-/// Solves the sensor's pose if the settings ask for it. A solved pose that only confirms the
-/// configured one does not replace it, so that the model keeps its bytes.
-PosedScan with_pose(Scan scan, const std::filesystem::path& folder, const ModelSettings& settings,
-                    const std::stop_token& stop) {
-  PosedScan posed{.scan = std::move(scan)};
-  if (settings.scan.pose == PoseSource::configured) {
-    take_told_poses(posed.scan);
-  } else if (!posed.scan.solved && is_one_turn(posed.scan)) {
-    ScanSolution solution =
-        solve_scan(folder, posed.scan, stored_snapshots(folder, posed.scan, stop),
-                   settings.limits.threads, stop);
-    take_solution(posed.scan, solution);
-    posed.findings = std::move(solution.report.findings);
-  }
-  add_stored_move(folder, posed.findings);
-  return posed;
 }
 
 /// Reads the scan. The sensor map that the arguments name, if any, replaces its own.
@@ -92,18 +64,22 @@ void expect_no_input(const std::filesystem::path& output, const std::filesystem:
 
 }  // namespace
 
-ReconstructInput read_input(const ReconstructArguments& arguments, const std::stop_token& stop) {
+ReconstructInput read_input(const ReconstructArguments& arguments) {
   if (!arguments.output.empty()) {
     expect_no_input(arguments.output, arguments.folder);
     expect_writable(arguments.output);
   }
-  Scan stored = read_scan_of(arguments);
-  ReconstructInput input{.settings = settings_from(arguments.settings, stored)};
-  PosedScan posed = with_pose(std::move(stored), arguments.folder, input.settings, stop);
-  input.scan = std::move(posed.scan);
-  input.findings = std::move(posed.findings);
-  input.options = options_from(input.settings, input.scan);
-  if (input.options.memory_limit != 0) {
+  Scan scan = read_scan_of(arguments);
+  ReconstructInput input{.settings = settings_from(arguments.settings, scan)};
+  const ModelSettings& settings = input.settings;
+  if (settings.scan.pose == PoseSource::configured) {
+    take_told_poses(scan);
+  }
+  input.model = {.folder = arguments.folder,
+                 .scan = std::move(scan),
+                 .options = options_from(settings),
+                 .solves_pose = settings.scan.pose == PoseSource::solved};
+  if (settings.limits.memory_bytes != 0) {
     return_freed_memory();
   } else {
     keep_freed_memory();

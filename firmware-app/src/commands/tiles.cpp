@@ -19,14 +19,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 /// @throws Error "bad-settings"  if the scan was made on a turntable, which is not tiled
-ReconstructInput read_tiled_input(const ReconstructArguments& arguments,
-                                  const std::stop_token& stop) {
-  ReconstructInput input = read_input(arguments, stop);
+ModelInput read_tiled_input(const ReconstructArguments& arguments) {
+  ModelInput input = read_input(arguments).model;
   if (!has_free_poses(input.scan)) {
     throw Error(ErrorCode::bad_settings,
                 arguments.folder.string() + ": has no tiles: it is a scan on the turntable",
                 "Make its model whole, by octurn reconstruct -o.");
   }
+  fit_to_scan(input.options, input.scan);
   return input;
 }
 
@@ -46,7 +46,7 @@ Json to_json(const TilePlan& plan, const ReconstructOptions& options) {
 
 void plan_tiles(const TileArguments& arguments) try {
   const SignalStop signal;
-  const ReconstructInput input = read_tiled_input(arguments.model, signal.token());
+  const ModelInput input = read_tiled_input(arguments.model);
   ProgressBar bar;
   const TilePlan plan = plan_tiles(
       input.options, shown_snapshots(arguments.model.folder, input.scan, bar, signal.token()),
@@ -61,7 +61,7 @@ void plan_tiles(const TileArguments& arguments) try {
 
 void make_tile(const TileArguments& arguments) try {
   const SignalStop signal;
-  const ReconstructInput input = read_tiled_input(arguments.model, signal.token());
+  const ModelInput input = read_tiled_input(arguments.model);
   ProgressBar bar;
   const SnapshotSource snapshots =
       shown_snapshots(arguments.model.folder, input.scan, bar, signal.token());

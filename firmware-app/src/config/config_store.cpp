@@ -128,6 +128,12 @@ Config with_page_settings(const Config& base, const json& values) {
   return with_settings(base, values);
 }
 
+namespace {
+
+/// Reads `data/settings.json`. Does not throw for a damaged or refused file: it then returns the
+/// settings that the daemon last served with, or else the accepted part of the file.
+///
+/// @param base  the configuration that the settings override and may not contradict
 StoredSettings read_stored_settings(const fs::path& data, const Config& base) {
   FileContent content = read_object(data / settings_file);
   if (content.values) {
@@ -147,9 +153,12 @@ StoredSettings read_stored_settings(const fs::path& data, const Config& base) {
           .trouble = content.trouble};
 }
 
+/// Writes `data/settings.json`, whole or not at all. @throws Error "disk-full", "write-failed"
 void write_stored_settings(const fs::path& data, const json& values) {
   write_file(data / settings_file, values.dump(2) + "\n");
 }
+
+}  // namespace
 
 void write_last_good_settings(const fs::path& data, const json& values) {
   const FileContent last = read_object(data / last_good_file);
@@ -158,10 +167,15 @@ void write_last_good_settings(const fs::path& data, const json& values) {
   }
 }
 
+namespace {
+
+/// The settings that the daemon last served with; empty if they are unknown or refused.
 json read_last_good_settings(const fs::path& data, const Config& base) {
   const FileContent last = read_object(data / last_good_file);
   return last.values && refusal(base, *last.values).empty() ? *last.values : json::object();
 }
+
+}  // namespace
 
 json merged(json values, const json& change) {
   values.merge_patch(change);

@@ -494,9 +494,14 @@ std::vector<TurnFinding> check_turn(const TurnMeasurement& turn, const StepperSe
   return findings;
 }
 
+namespace {
+
+/// Whether a turn came out whole, and no step was lost.
 bool is_whole_turn(const TurnMeasurement& turn) {
   return std::abs(std::abs(turn.turn_deg) - 360) <= not_whole_deg && !loses_steps(turn);
 }
+
+}  // namespace
 
 TurnFinding check_motion(const MotionLimits& limits, const StepperSettings& settings) {
   if (!limits.fastest) {

@@ -71,9 +71,6 @@ struct TurnFinding {
 /// @param settings  in force during the measurement
 std::vector<TurnFinding> check_turn(const TurnMeasurement& turn, const StepperSettings& settings);
 
-/// Whether a turn came out whole, and no step was lost.
-bool is_whole_turn(const TurnMeasurement& turn);
-
 /// Whether the motor has a margin at the configured speeds; proposes others otherwise.
 TurnFinding check_motion(const MotionLimits& limits, const StepperSettings& settings);
 

@@ -96,8 +96,8 @@ constexpr std::chrono::milliseconds tick(100);
 // Polling interval while there are too many connections, as clients in the queue wait for it.
 constexpr std::chrono::milliseconds crowded_tick(10);
 
-}  // namespace
-
+/// The open connections that were accepted at this port, in any state.
+/// @throws Error "no-descriptors"  if /proc/self/fd cannot be read
 std::vector<AcceptedSocket> accepted_sockets(int local_port) {
   std::vector<AcceptedSocket> sockets;
   for (const int descriptor : open_descriptors()) {
@@ -107,6 +107,8 @@ std::vector<AcceptedSocket> accepted_sockets(int local_port) {
   }
   return sockets;
 }
+
+}  // namespace
 
 void defer_accept(int local_port, std::chrono::seconds time) {
   const auto seconds = static_cast<int>(time.count());
@@ -120,6 +122,9 @@ void defer_accept(int local_port, std::chrono::seconds time) {
   }
 }
 
+namespace {
+
+/// Shuts a connection down, unless it is closed already. A thread that waits for it wakes up.
 void shut_down(const AcceptedSocket& socket, Cut cut) {
   // The duplicate pins the open file: `descriptor` may be closed and reused at any moment.
   const FileDescriptor copy(::fcntl(socket.descriptor, F_DUPFD_CLOEXEC, 0));
@@ -132,8 +137,6 @@ void shut_down(const AcceptedSocket& socket, Cut cut) {
   }
   ::shutdown(copy.number(), cut == Cut::reading ? SHUT_RD : SHUT_RDWR);
 }
-
-namespace {
 
 // Debt that a retransmitted packet does not explain: clients above it are cut first.
 constexpr double noticeable_debt = 1;  // seconds

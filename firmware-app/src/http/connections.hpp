@@ -28,10 +28,6 @@ struct AcceptedSocket {
   bool has_unread = false;   ///< received bytes were not read yet
 };
 
-/// The open connections that were accepted at this port, in any state.
-/// @throws Error "no-descriptors"  if /proc/self/fd cannot be read
-std::vector<AcceptedSocket> accepted_sockets(int local_port);
-
 /// Has the kernel hold back new connections at this port until their first bytes arrive, or for
 /// this long (TCP_DEFER_ACCEPT, tcp(7)), so that a silent client does not occupy a thread.
 /// @param time  0 switches this off
@@ -43,9 +39,6 @@ enum class Cut {
   finish,   ///< both ways; bytes that were sent still arrive
   reset,    ///< both ways; bytes that the client has not received are discarded
 };
-
-/// Shuts a connection down, unless it is closed already. A thread that waits for it wakes up.
-void shut_down(const AcceptedSocket& socket, Cut cut);
 
 /// What a connection waits for.
 enum class Wait {

@@ -73,11 +73,13 @@ bool has_type(const Request& request, std::string_view body_type) {
 /// The page's address in the hotspot, as in image-build's hotspot.network.
 constexpr const char* page_address = "http://192.168.77.1/";
 
-}  // namespace
-
+/// Whether a `Host` is an IP address or a name of this host.
+/// @param host_names  besides the local ones
 bool is_own_host(std::string_view host, std::span<const std::string> host_names) {
   return is_ours(to_host_name(host), host_names);
 }
+
+}  // namespace
 
 std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names,
                                std::string_view body_type) {

@@ -11,10 +11,6 @@
 
 namespace octurn {
 
-/// Whether a `Host` is an IP address or a name of this host.
-/// @param host_names  besides the local ones
-bool is_own_host(std::string_view host, std::span<const std::string> host_names);
-
 /// Whether a request may be answered at all, and may change something.
 ///
 /// Any page that is open in a browser can send requests here. Two rules keep other sites out. The

@@ -121,9 +121,14 @@ OutgoingRequest upload_request(const Printer& printer, const std::filesystem::pa
   return request;
 }
 
+namespace {
+
+/// PrusaLink's `GET /api/v1/storage`, which lists the storages for files.
 OutgoingRequest storage_request(const Printer& printer) {
   return authorized(printer, "GET", "/api/v1/storage");
 }
+
+}  // namespace
 
 std::optional<std::string> usable_storage(const std::string& body) try {
   const json answer = parse_json(body, ErrorCode::bad_json, "it");

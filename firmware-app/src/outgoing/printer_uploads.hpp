@@ -29,9 +29,6 @@ std::string printer_file_name(std::string name);
 OutgoingRequest upload_request(const Printer& printer, const std::filesystem::path& file,
                                const std::string& name, const std::string& storage);
 
-/// PrusaLink's `GET /api/v1/storage`, which lists the storages for files.
-OutgoingRequest storage_request(const Printer& printer);
-
 /// The path of the first writable storage in the body of that answer; nothing if there is none.
 std::optional<std::string> usable_storage(const std::string& body);
 

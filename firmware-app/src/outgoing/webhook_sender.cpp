@@ -29,6 +29,9 @@ std::string_view to_string(WebhookState::Outcome outcome) {
   return "failed";
 }
 
+namespace {
+
+/// The reason why a delivery with that answer has failed; empty if it has succeeded.
 std::string webhook_trouble(const OutgoingAnswer& answer) {
   if (answer.status == 0) {
     return answer.trouble;
@@ -39,6 +42,8 @@ std::string webhook_trouble(const OutgoingAnswer& answer) {
   }
   return answer.status < 300 ? "" : "it answered " + std::to_string(answer.status);
 }
+
+}  // namespace
 
 // No answer, a timeout (408), too early (425, RFC 8470), too many requests (429, RFC 6585) or a
 // server error (RFC 9110, section 15.6).

@@ -93,9 +93,6 @@ class WebhookSender {
   std::jthread worker_;  // the last member, so that it ends before what it uses goes away
 };
 
-/// The reason why a delivery with that answer has failed; empty if it has succeeded.
-std::string webhook_trouble(const OutgoingAnswer& answer);
-
 /// Whether a failed delivery with that answer may succeed later.
 bool is_worth_another_attempt(const OutgoingAnswer& answer);
 

@@ -321,20 +321,24 @@ void CommandSlot::wait_for_command(Clock::duration patience) {
 
 void make_model(const std::filesystem::path& folder, ReconstructOptions options, ModelPipe& pipe) {
   const std::stop_token stop = pipe.stop().get_token();
-  const Scan scan = read_scan(folder);
-  const SnapshotSource snapshots = readable_snapshots(folder, scan, stop);
-  options.clip = model_clip(scan);
-  options.placements = placements(scan);
-  fit_to_sensor(options, scan);
-  const std::unique_ptr<Reconstructor> reconstruction = make_reconstructor(options);
-  reconstruction->add(snapshots, stop);
-  const SurfaceCount count = reconstruction->count(snapshots, stop);
-  expect_facets(count.facets);
-  pipe.set_length(stl_bytes(count.facets));
-  pipe.write(stl_header(count.facets));
-  const auto send = [&](std::span<const Facet> facets) { pipe.write(std::as_bytes(facets)); };
-  reconstruction->surface(snapshots, send, stop);
-  pipe.close();
+  ModelInput input{.folder = folder,
+                   .scan = read_scan(folder),
+                   .options = std::move(options),
+                   .solves_pose = false,
+                   .is_judged = false};
+  input.options.clip = model_clip(input.scan);
+  input.snapshots = [&](const Scan& scan) { return readable_snapshots(folder, scan, stop); };
+  input.write = [&](Reconstructor& reconstructor, const SnapshotSource& snapshots) {
+    const SurfaceCount count = reconstructor.count(snapshots, stop);
+    expect_facets(count.facets);
+    pipe.set_length(stl_bytes(count.facets));
+    pipe.write(stl_header(count.facets));
+    const auto send = [&](std::span<const Facet> facets) { pipe.write(std::as_bytes(facets)); };
+    reconstructor.surface(snapshots, send, stop);
+    pipe.close();
+    return std::optional<ModelReport>();
+  };
+  build_model(std::move(input), stop);
 }
 
 void rebuild(const RebuildCommand& command) {

@@ -2,21 +2,18 @@
 
 #include <atomic>
 #include <chrono>
-#include <cmath>
 #include <future>
 #include <memory>
-#include <numbers>
+#include <system_error>
 #include <utility>
 #include <vector>
 
 #include "build/early_model.hpp"
-#include "calibration/solve_pose.hpp"
 #include "capture/last_look.hpp"
 #include "capture/line_preview.hpp"
 #include "capture/plan.hpp"
 #include "capture/scan_of_rig.hpp"
-#include "capture/take_depth_image.hpp"
-#include "capture/take_pictures.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/quality.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/snapshot.hpp"
@@ -38,21 +35,21 @@ double stored_angle(double angle) { return radians_from_degrees(degrees_from_rad
 class Run {
  public:
   Run(const ScanSettings& settings, const Limits& limits, const std::filesystem::path& folder,
-      Rig& rig, const std::stop_token& stop, const ScanObserver& observer)
+      Capture& capture, const std::stop_token& stop, const ScanObserver& observer)
       : settings_(settings),
         folder_(folder),
-        rig_(rig),
+        capture_(capture),
         stop_(stop),
         observer_(observer),
         scan_(std::filesystem::exists(folder / "scan.json") ? read_scan(folder)
-                                                            : scan_of_rig(rig, settings)),
+                                                            : capture.plan(settings)),
         reconstruction_(options_of_scan(scan_, settings, limits)),
-        check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots)),
+        check_({}, reconstruction_.options().clip, static_cast<std::size_t>(settings.snapshots),
+               sensor_traits(scan_)),
         preview_solves_(settings.snapshots) {}
 
   bool has_all_snapshots() const { return done() == settings_.snapshots; }
-  bool sees_depth() const { return !scan_.laser; }
-  /// @return false if stopped first; so do `take_depth` and `take_lines`
+  /// @return false if stopped first
   bool take_snapshots();
   std::vector<CalibrationFinding> calibrate();
   std::optional<Model> build(Clock::time_point captured,
@@ -61,8 +58,7 @@ class Run {
  private:
   int done() const { return static_cast<int>(scan_.shots.size()); }
   std::optional<ModelReport> write();
-  bool take_depth(const Stop& at, double angle);
-  bool take_lines(const Stop& at, double angle, LinePreview& preview);
+  void add_taken(DepthFrame frame, double angle);
   void resume();
   Scan shown(Scan scan) const;
   SnapshotSource checked();
@@ -76,11 +72,10 @@ class Run {
 
   const ScanSettings& settings_;
   const std::filesystem::path& folder_;
-  Rig& rig_;
+  Capture& capture_;
   const std::stop_token& stop_;
   const ScanObserver& observer_;
   Scan scan_;
-  std::ptrdiff_t first_readings_ = 0;  // in the first snapshot
   FittingReconstruction reconstruction_;
   PoseChecks check_;  // of the snapshots added to the reconstruction
   int added_ = 0;     // snapshots added to the reconstruction
@@ -92,68 +87,50 @@ class Run {
 };
 
 bool Run::take_snapshots() {
-  rig_.seen_stop() = {};  // of an earlier scan, maybe of another object
-  const int steps = rig_.turntable().steps_per_turn();
+  Rig& rig = capture_.rig();
+  rig.seen_stop() = {};  // of an earlier scan, maybe of another object
+  const int steps = rig.turntable().steps_per_turn();
   const OtherCores than_that_of_the_pulses;
   if (done() == 0) {
-    begin_scan(scan_, settings_, folder_, rig_);
+    std::error_code ignored;  // if the folder cannot be made, the first image says why
+    std::filesystem::create_directories(folder_, ignored);
+    capture_.begin(scan_, settings_, folder_);
   } else {
     resume();
   }
   LinePreview preview(folder_, reconstruction_.options(), settings_.snapshots, stop_, observer_);
   for (const std::int64_t position :
-       stop_positions(rig_.turntable().position(), steps, settings_.snapshots, done())) {
+       stop_positions(rig.turntable().position(), steps, settings_.snapshots, done())) {
     const Stop at{.index = done(), .position = position};
     const double angle = radians_from_degrees(angle_deg_at(position, steps));
-    if (!(scan_.laser ? take_lines(at, angle, preview) : take_depth(at, angle))) {
+    std::optional<TakenStop> taken =
+        capture_.take(at, angle, settings_, folder_, scan_, stop_, observer_);
+    if (!taken) {
       return false;
+    }
+    observer_.on_progress(Phase::capturing, done());
+    if (taken->frame) {
+      add_taken(*std::move(taken->frame), angle);
+    } else {
+      preview.add(scan_);
     }
   }
   return true;
 }
 
-bool Run::take_depth(const Stop& at, double angle) {
-  std::optional<DepthFrame> frame = take_depth_image(rig_, at, settings_, stop_, observer_);
-  if (!frame) {
-    return false;
-  }
-  const std::ptrdiff_t readings = readings_in(*frame);
-  first_readings_ = done() == 0 ? readings : first_readings_;
-  expect_coverage(readings, first_readings_, scan_.sensor_name);
-  const Shot shot{.file = shot_file(done()), .angle = angle, .lost_share = rig_.take_lost_share()};
-  store_snapshot(folder_, scan_, shot, *frame);
-  observer_.on_progress(Phase::capturing, done());
-  add([frame = *std::move(frame), angle = stored_angle(angle), this](const Scan& so_far) {
+void Run::add_taken(DepthFrame frame, double angle) {
+  add([frame = std::move(frame), angle = stored_angle(angle), this](const Scan& so_far) {
     const Snapshot added = make_snapshot(frame, shown(so_far), {.angle = angle});
     check_.add(so_far.shots.size() - 1, added);
     (*reconstruction_).add(added, stop_);
   });
-  return true;
-}
-
-/// Adds lines to the preview only: the model's first surface ends at the last stop's lines.
-bool Run::take_lines(const Stop& at, double angle, LinePreview& preview) {
-  if (!take_stop(rig_, at, angle, folder_, scan_, stop_, observer_)) {
-    return false;
-  }
-  preview.add(scan_);
-  return true;
 }
 
 /// Adds the stored snapshots of a resumed scan, in their order, while the platform turns.
 void Run::resume() {
-  expect_same_rig(scan_, settings_, rig_);
+  expect_same_sensor(scan_, settings_, capture_);
   preview_solves_.resume_after(done());
-  if (!scan_.laser) {
-    const SnapshotSource stored = checked();
-    first_readings_ = readings_in(stored.read(0).frame);
-    // The next stop shows whether steps were lost meanwhile.
-    const Turntable& turntable = rig_.turntable();
-    const double turned = std::remainder(
-        rig_.platform_angle_deg() / 360 - scan_.shots.back().angle / (2 * std::numbers::pi), 1);
-    rig_.seen_stop() = {
-        .image = stored.read(scan_.shots.size() - 1).frame,
-        .position = turntable.position() - std::llround(turned * turntable.steps_per_turn())};
+  if (capture_.resume(scan_, checked())) {
     add_stored();
   }
 }
@@ -260,8 +237,8 @@ void Run::add(Add add_to) {
   }
   added_ = done();
   const bool is_preview = done() < settings_.snapshots;  // else the model follows
-  const bool solves = preview_solves_.are_due(done()) && !scan_.laser && !scan_.solved &&
-                      settings_.pose != PoseSource::configured;
+  const bool solves =
+      preview_solves_.are_due(done()) && !scan_.solved && settings_.pose != PoseSource::configured;
   adding_ = std::async(std::launch::async, [=, so_far = scan_, this, add = std::move(add_to)] {
     add(so_far);
     if (solves) {
@@ -309,9 +286,8 @@ std::optional<Model> Run::build(Clock::time_point captured,
   if (!report) {
     return std::nullopt;
   }
-  Quality quality = judge(check_.figures(reconstruction_.options().threads), *report, findings);
-  quality.size_error = expected_size_error(scan_, report->size, seen_optics_);
-  add_warm_up(quality, scan_);
+  Quality quality =
+      judge(check_, reconstruction_.options().threads, scan_, *report, findings, seen_optics_);
   reconstruction_.add_coarser_reason(quality);
   report->places = {};  // dropped: every request for a job's state copies it
   return Model{.report = *std::move(report),
@@ -322,16 +298,15 @@ std::optional<Model> Run::build(Clock::time_point captured,
 }  // namespace
 
 std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits,
-                              const std::filesystem::path& folder, Rig& rig,
+                              const std::filesystem::path& folder, Capture& capture,
                               const std::stop_token& stop, const ScanObserver& observer) try {
-  Run run(settings, limits, folder, rig, stop, observer);
+  Run run(settings, limits, folder, capture, stop, observer);
   const bool is_unfinished = !run.has_all_snapshots();
   if (is_unfinished && !run.take_snapshots()) {
     return std::nullopt;
   }
-  const bool retakes = is_unfinished && run.sees_depth();
   const auto retaken =
-      retakes ? retake_first_stop(rig, settings, stop, observer) : std::optional<DepthFrame>();
+      is_unfinished ? capture.look_again(settings, stop, observer) : std::optional<DepthFrame>();
   const Clock::time_point captured = Clock::now();
   std::vector<CalibrationFinding> findings = run.calibrate();
   if (retaken) {

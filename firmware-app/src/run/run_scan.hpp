@@ -7,7 +7,7 @@
 #include <optional>
 #include <stop_token>
 
-#include "capture/rig.hpp"
+#include "capture/capture.hpp"
 #include "capture/scan_observer.hpp"
 #include "store/job.hpp"
 
@@ -32,7 +32,7 @@ namespace octurn {
 /// @return the model; nullopt if stopped first
 /// @throws Error  if the sensor, the turntable or the disk fails, or there is no surface
 std::optional<Model> run_scan(const ScanSettings& settings, const Limits& limits,
-                              const std::filesystem::path& folder, Rig& rig,
+                              const std::filesystem::path& folder, Capture& capture,
                               const std::stop_token& stop, const ScanObserver& observer);
 
 /// Says after which snapshots of a turn the sensor's pose is solved for the preview: once a third

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "log.hpp"
+#include "octurn/median.hpp"
 
 namespace octurn {
 namespace {
@@ -45,7 +46,7 @@ void TimeLeft::count(int snapshots, Clock::time_point now) {
     return;
   }
   if (last_) {
-    pace_.emplace_back(now - *last_);
+    pace_.push_back(Seconds(now - *last_).count());
     if (pace_.size() > stops_of_pace) {
       pace_.erase(pace_.begin());
     }
@@ -60,7 +61,7 @@ void TimeLeft::tell_turn(Clock::time_point now) {
   if (!has_pace && !before_.is_measured) {
     return;
   }
-  const Seconds stop = has_pace ? median(pace_) : before_.stop;
+  const Seconds stop = has_pace ? Seconds(median(pace_)) : before_.stop;
   const Seconds left = stop * (stops_ - snapshots_ + 1) + before_.build;
   tell(left, left - stop, now);
 }

@@ -70,7 +70,7 @@ class TimeLeft {
   int stops_;
   int snapshots_;
   std::optional<Clock::time_point> last_ = {};  // of the last snapshot; nullopt: after a failure
-  std::vector<Seconds> pace_ = {};              // times of the last stops
+  std::vector<double> pace_ = {};               // seconds, of the last stops
   std::optional<ExpectedEnd> expected_ = {};
 };
 

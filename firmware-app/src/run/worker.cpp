@@ -13,11 +13,9 @@
 #include "calibration/lens_files.hpp"
 #include "calibration/optics_files.hpp"
 #include "calibration/sensor_map_files.hpp"
-#include "calibration/solve_pose.hpp"
-#include "capture/board_views.hpp"
-#include "capture/scan_of_rig.hpp"
 #include "capture/wall_views.hpp"
 #include "log.hpp"
+#include "octurn/calibrate.hpp"
 #include "octurn/error.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/sensor_map.hpp"
@@ -133,29 +131,6 @@ std::string describe_outcome(const CalibrationRun& run) {
   }
 }
 
-/// Shows a moving board to a simulated camera during its lifetime.
-class ShownBoard {
- public:
-  explicit ShownBoard(Camera& camera) : camera_(camera) { camera_.show_board(true); }
-  ~ShownBoard() { camera_.show_board(false); }
-  ShownBoard(const ShownBoard&) = delete;
-  ShownBoard& operator=(const ShownBoard&) = delete;
-
- private:
-  Camera& camera_;
-};
-
-void expect_size_for_lens(const Picture& picture, const Intrinsics& lens,
-                          const std::string& camera) {
-  if (picture.width != lens.width || picture.height != lens.height) {
-    throw Error(ErrorCode::sensor_other,
-                camera +
-                    ": its pictures have another size than laser.width and "
-                    "laser.height say",
-                "Correct them, or plug in the camera that they are of.");
-  }
-}
-
 /// Whether optics are the same but for the depth scale, which each scan sets.
 bool are_alike(SensorOptics one, const SensorOptics& other) {
   one.depth_scale = other.depth_scale;
@@ -171,7 +146,7 @@ Worker::Worker(const RigOptions& rig, const Limits& limits, const WorkerPorts& p
       sensor_off_after_(rig.sensor_off_after),
       limits_(limits),
       ports_(ports),
-      capture_(make_capture(rig_, ports.store.data(), ports.calibration)) {}
+      capture_(make_capture(rig_, ports.store.data(), &ports.calibration)) {}
 
 void Worker::work() {
   open_turntable();  // so that the status shows it
@@ -217,7 +192,7 @@ void Worker::carry_out(CameraCommand& /*command*/, const std::stop_source& stop)
 }
 
 void Worker::show_next_frame(const std::stop_token& stop) {
-  if (std::optional<Capture::Seen> seen = capture_->read(stop)) {
+  if (std::optional<SeenImage> seen = capture_->read(stop)) {
     std::visit([this](auto image) { show(std::move(image)); }, *std::move(seen));
   }
 }
@@ -232,7 +207,7 @@ void Worker::show(DepthFrame frame) {
 
 void Worker::show(Picture picture) {
   ports_.heartbeat.beat();
-  set_sensor_ready(rig_.camera().name());
+  set_sensor_ready(capture_->sensor().name);
   introduce_sensor();
   ports_.board.set_camera_picture(std::move(picture));
 }
@@ -360,8 +335,8 @@ void Worker::attempt(const std::stop_token& stop) {
       expect_same_sensor();
       capture_->keep_sensor_map(ports_.store.folder(job_.id));
     }
-    job_.model =
-        run_scan(job_.settings, limits_, ports_.store.folder(job_.id), rig_, stop, observer(stop));
+    job_.model = run_scan(job_.settings, limits_, ports_.store.folder(job_.id), *capture_, stop,
+                          observer(stop));
     job_.state = job_.model && join(stop) ? JobState::finished : JobState::cancelled;
     job_.failure.reset();
   } catch (...) {
@@ -466,7 +441,7 @@ void Worker::keep_calibration(const ScanSolution& solution) {
 /// in between it is dropped once the sensor is open. Nothing is kept of a scan that began with
 /// other optics than those in force, as one that was paused over a calibration.
 void Worker::keep_pose(PoseRecord pose, const CalibrationReport& report, OpticsOrigin origin) {
-  const std::string serial = capture_->serial();
+  const std::string serial = capture_->sensor().serial;
   const bool are_new = report.optics_differ && !serial.empty();
   const auto kept = optics_record(ports_.store.data(), serial);
   if (kept ? !rig_.optics() || !are_alike(kept->optics.value, rig_.optics()->value)
@@ -567,7 +542,7 @@ void Worker::expect_same_sensor() {
     return;
   }
   const Scan first = read_scan(ports_.store.folder(job_.pose_of->scan));
-  if (!has_sensor_of(first, job_.settings, rig_)) {
+  if (!capture_->has_sensor_of(first, job_.settings)) {
     throw Error(ErrorCode::sensor_other,
                 "the scan of the first pose was made with another sensor: " + first.sensor_name,
                 "Plug in the one that it was made with.", {{"first_pose_with", first.sensor_name}});
@@ -756,8 +731,8 @@ void Worker::introduce_sensor() {
     return;
   }
   introduced_ = since;
-  KnownSensor known{
-      .serial = capture_->serial(), .since = since, .has_infrared = capture_->has_infrared()};
+  const SensorInfo sensor = capture_->sensor();
+  KnownSensor known{.serial = sensor.serial, .since = since, .has_infrared = sensor.has_infrared};
   try {
     ports_.calibration.drop_without_optics(known.serial);
     known.map = find_map_summary(ports_.store.data(), known.serial);
@@ -772,13 +747,7 @@ void Worker::introduce_sensor() {
 
 void Worker::carry_out(LensCommand& command, const std::stop_source& stop) {
   carry_out({.kind = CalibrationRun::Kind::lens, .phase = CalibrationRun::Phase::looking},
-            [&](CalibrationRun& run) {
-              if (rig_.laser() != nullptr) {
-                find_lens(run, stop.get_token());
-              } else {
-                find_optics(run, command.square, stop.get_token());
-              }
-            });
+            [&](CalibrationRun& run) { find_lens(run, command.square, stop.get_token()); });
 }
 
 /// Whether a measurement by a board was cancelled; else it is solved from the views so far.
@@ -803,71 +772,30 @@ void Worker::report_look(CalibrationRun& run, const BoardLook& look) {
   ports_.board.set_calibration_run(run);
 }
 
-/// The same as `find_lens` for a depth sensor: solves its optics.
-void Worker::find_optics(CalibrationRun& run, double square, const std::stop_token& stop) {
-  ports_.heartbeat.suspend();  // this takes as long as somebody holds a board
-  DepthSensor& sensor = rig_.sensor();
-  run.camera = sensor.serial();
-  if (run.camera.empty()) {
-    throw Error(ErrorCode::sensor_other,
-                sensor.name() + ": reports no serial number, under which its optics could be kept",
-                "Measure a known length instead.", {{"no_serial", sensor.name()}});
-  }
-  const auto show = [&](const Picture& picture, const BoardLook& look) {
-    set_sensor_ready(sensor.name());
-    introduce_sensor();
-    ports_.board.set_camera_picture(picture);
-    report_look(run, look);
-  };
-  const std::vector<DepthBoardView> views = take_board_views(sensor, stop, show);
-  if (is_board_put_away(run, stop)) {
-    return;
-  }
-  run.phase = CalibrationRun::Phase::solving;
-  ports_.board.set_calibration_run(run);
-  const Intrinsics& told = sensor.intrinsics();
-  const DepthOpticsReport report = calibrate_depth_optics(views, told.width, told.height, square);
-  run.lens = report.lens;
-  if (report.lens.accepted) {
-    run.optics = report.optics;
-    log::info("calibration", "the infrared picture is shifted by " +
-                                 std::to_string(report.shift.x()) + ", " +
-                                 std::to_string(report.shift.y()) + " pixels");
-  }
-  run.state = run.lens->accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
-}
-
 /// Takes views of a board until they suffice or `Scanner::solve_lens` is called; solves the lens.
-void Worker::find_lens(CalibrationRun& run, const std::stop_token& stop) {
+void Worker::find_lens(CalibrationRun& run, double square, const std::stop_token& stop) {
   ports_.heartbeat.suspend();  // this takes as long as somebody holds a board
-  Camera& camera = rig_.camera();
-  if (camera.serial().empty()) {
-    throw Error(ErrorCode::sensor_other,
-                camera.name() + ": reports no serial number, under which its lens could be kept",
-                "Take pictures of a board, and use octurn calibrate --board.",
-                {{"camera_no_serial", camera.name()}});
+  run.camera = capture_->sensor().serial;
+  const BoardObserver observer{.on_picture =
+                                   [&](const Picture& picture, const BoardLook& look) {
+                                     show(picture);
+                                     report_look(run, look);
+                                   },
+                               .on_solving =
+                                   [&] {
+                                     if (is_board_put_away(run, stop)) {
+                                       return false;
+                                     }
+                                     run.phase = CalibrationRun::Phase::solving;
+                                     ports_.board.set_calibration_run(run);
+                                     return true;
+                                   }};
+  const auto result = capture_->measure_board(square, stop, observer);
+  if (result) {
+    run.lens = result->lens;
+    run.optics = result->optics;
+    run.state = run.lens->accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
   }
-  const Intrinsics lens = rig_.laser()->lens;
-  run.camera = camera.serial();
-  const ShownBoard board(camera);
-  BoardWatch watch(lens);
-  while (!watch.is_complete()) {
-    const std::optional<TimedPicture> timed = camera.read(stop);
-    if (!timed) {
-      break;
-    }
-    expect_size_for_lens(timed->picture, lens, camera.name());
-    watch.see(timed->picture);
-    show(timed->picture);
-    report_look(run, watch.look());
-  }
-  if (is_board_put_away(run, stop)) {
-    return;
-  }
-  run.phase = CalibrationRun::Phase::solving;
-  ports_.board.set_calibration_run(run);
-  run.lens = calibrate_lens(watch.views(), lens.width, lens.height);
-  run.state = run.lens->accepted ? CalibrationRun::State::done : CalibrationRun::State::refused;
 }
 
 /// Returns the folder of the scan whose lens or optics the running one uses: a resumed scan keeps

@@ -82,8 +82,7 @@ class Worker {
   void show_rebuilt(int snapshots);
   void measure(CalibrationRun& run, const ScanSettings& settings, const std::stop_token& stop);
   void measure_wall(CalibrationRun& run, const std::stop_token& stop);
-  void find_lens(CalibrationRun& run, const std::stop_token& stop);
-  void find_optics(CalibrationRun& run, double square, const std::stop_token& stop);
+  void find_lens(CalibrationRun& run, double square, const std::stop_token& stop);
   void report_look(CalibrationRun& run, const BoardLook& look);
   bool is_board_put_away(CalibrationRun& run, const std::stop_token& stop) const;
   std::filesystem::path first_scan() const;

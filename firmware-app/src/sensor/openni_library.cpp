@@ -32,8 +32,7 @@ std::string any_sensor() {
   return std::string(kinect_scheme);
 }
 
-}  // namespace
-
+/// The last failure in the words of OpenNI2 and its drivers, on one line.
 std::string openni_error_text() {
   std::string text = openni::OpenNI::getExtendedError();
   for (char& letter : text) {
@@ -42,6 +41,8 @@ std::string openni_error_text() {
   const std::size_t first = text.find_first_not_of(' ');
   return first == text.npos ? "" : text.substr(first, text.find_last_not_of(' ') + 1 - first);
 }
+
+}  // namespace
 
 void expect_ok(openni::Status status, const char* doing) {
   if (status != openni::STATUS_OK) {

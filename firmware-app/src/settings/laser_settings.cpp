@@ -207,7 +207,7 @@ void check_laser_settings(JsonObject& keys, const LaserSettings& settings) {
 
 void use_laser_capture_defaults(ScanSettings& settings) {
   use_laser_defaults(settings);
-  settings.snapshots = 200;
+  settings.snapshots = laser_traits.stops;
   settings.filter = DepthFilter::basic;
   settings.clip = {.min = {-0.1, -0.1, 0.002}, .max = {0.1, 0.1, 0.2}};
 }

@@ -196,8 +196,8 @@ std::size_t half_of_memory() {
 }
 
 void use_laser_defaults(ScanSettings& settings) {
-  settings.leaf_size = laser_leaf_size;
-  settings.target_error = laser_target_error;
+  settings.leaf_size = laser_traits.leaf_size;
+  settings.target_error = laser_traits.target_error;
 }
 
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits) {

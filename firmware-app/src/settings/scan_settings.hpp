@@ -49,15 +49,15 @@ inline constexpr SettingRanges stored_ranges{.max_snapshots = 4000, .max_coordin
 
 /// The settings of a scan.
 struct ScanSettings {
-  int snapshots = 36;  ///< stops in a turn
+  int snapshots = SensorTraits{}.stops;  ///< in a turn
   DepthFilter filter = DepthFilter::average;
   int frames = 10;  ///< at each stop, for filters that merge frames
   Method method = Method::solid;
-  double leaf_size = 0.001;   ///< metres
+  double leaf_size = SensorTraits{}.leaf_size;  ///< metres
   double threshold = 0.0001;  ///< square metres: square of a triangle's longest side; intersection
-  double target_error = ReconstructOptions{}.target_error;  ///< metres; solid
-  Parts parts = Parts::main;                                ///< solid
-  double root_size = 1.0;                                   ///< metres
+  double target_error = SensorTraits{}.target_error;  ///< metres; solid
+  Parts parts = Parts::main;                          ///< solid
+  double root_size = 1.0;                             ///< metres
   /// Metres, platform frame. Its bottom is at 5 mm, above the noise of a Kinect v1 on the platform.
   Box clip = {.min = {-0.14, -0.14, 0.005}, .max = {0.14, 0.14, 0.4}};
   PoseSource pose = PoseSource::solved;

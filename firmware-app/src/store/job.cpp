@@ -122,6 +122,15 @@ Failure interruption() {
           .hint = "Resume it if neither the object nor the platform was moved since."};
 }
 
+ScanCalibration to_scan_calibration(const CalibrationReport& report) {
+  return {.accepted = report.accepted,
+          .confirms_told = report.confirms_told(),
+          .reason = report.reason,
+          .solved = report.accepted ? std::optional(to_solved_pose(report)) : std::nullopt,
+          .optics = report.optics,
+          .findings = report.findings};
+}
+
 bool has_pose(const Build& build, const std::string& pose) {
   return std::ranges::find(build.poses, pose) != build.poses.end();
 }

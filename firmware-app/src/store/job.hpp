@@ -100,6 +100,9 @@ struct ScanCalibration {
   int rebuilt = 0;  ///< snapshots added again so far, with the solved pose
 };
 
+/// Returns what a job stores of a report.
+ScanCalibration to_scan_calibration(const CalibrationReport& report);
+
 /// A model that was built from the stored snapshots, with other settings than the scan's.
 struct Build {
   int number = 1;            ///< among the scan's builds, from 1

@@ -8,6 +8,7 @@
 #include <system_error>
 #include <utility>
 
+#include "octurn/median.hpp"
 #include "store/data_folder.hpp"
 
 namespace octurn {
@@ -75,24 +76,15 @@ std::vector<const EarlierScan*> matching(const std::vector<EarlierScan>& scans, 
 
 template <typename Value>
 Seconds median_value(const std::vector<const EarlierScan*>& scans, Value value) {
-  std::vector<Seconds> values;
+  std::vector<double> values;
   values.reserve(scans.size());
   for (const EarlierScan* const scan : scans) {
-    values.emplace_back(value(*scan));
+    values.push_back(Seconds(value(*scan)).count());
   }
-  return median(std::move(values));
+  return Seconds(median(std::move(values)));
 }
 
 }  // namespace
-
-Seconds median(std::vector<Seconds> values) {
-  if (values.empty()) {
-    return {};
-  }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
 
 ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSettings& settings) {
   const int snapshots = settings.snapshots;

@@ -35,9 +35,6 @@ struct EarlierScan {
 /// @param earlier  the newest first
 ScanEstimate estimate_scan(const std::vector<EarlierScan>& earlier, const ScanSettings& settings);
 
-/// Returns the median; for an even count the higher of the two middle values; 0 if there are none.
-Seconds median(std::vector<Seconds> values);
-
 /// Returns the last twenty finished scans of a store, newest first, with the sizes of their
 /// snapshots on the disk.
 std::vector<EarlierScan> earlier_scans(const ScanStore& store);

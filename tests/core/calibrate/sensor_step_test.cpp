@@ -80,9 +80,7 @@ TEST(SensorStep, IsNoneOfASensorThatWarmsUp) {
   EXPECT_FALSE(find_bump(*step));
 }
 
-TEST(SensorStep, IsNotLookedForWhereThePlatformIsNotSeen) {
-  EXPECT_FALSE(solve_sensor_step({}, angles()));
-}
+TEST(SensorStep, IsSkippedWithoutVisiblePlatform) { EXPECT_FALSE(solve_sensor_step({}, angles())); }
 
 }  // namespace
 }  // namespace octurn

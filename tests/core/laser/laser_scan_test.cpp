@@ -36,7 +36,7 @@ struct LaserScan {
 ReconstructOptions options(Method method, double leaf_size) {
   ReconstructOptions options{
       .method = method, .leaf_size = leaf_size, .root_size = 0.256, .clip = laser_rig(1).clip};
-  fit_to_sensor(options, LaserScan::get().scan);
+  fit_to_scan(options, LaserScan::get().scan);
   return options;
 }
 

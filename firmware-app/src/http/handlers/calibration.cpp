@@ -12,6 +12,7 @@
 #include "capture/scan_of_rig.hpp"
 #include "capture/wall_views.hpp"
 #include "http/handlers/appliance.hpp"
+#include "http/handlers/system.hpp"
 #include "http/json_body.hpp"
 #include "octurn/json_object.hpp"
 #include "octurn/units.hpp"
@@ -272,6 +273,7 @@ Response send_points(App& app) {
     frame = rectified(std::move(frame), lens, known.front().optics.value);
     lens = rectified(lens, known.front().optics.value);
   }
+  const SensorTraits& traits = sensor_traits(sensor_name(app));
   json points = json::array();
   for (int v = 0; v < frame.height; v += point_step) {
     for (int u = 0; u < frame.width; u += point_step) {
@@ -290,7 +292,10 @@ Response send_points(App& app) {
                           {"fx", lens.fx},
                           {"fy", lens.fy},
                           {"cx", lens.cx},
-                          {"cy", lens.cy}}},
+                          {"cy", lens.cy},
+                          {"nearest_m", traits.nearest},
+                          {"best_m", {traits.best_near, traits.best_far}},
+                          {"farthest_m", traits.farthest}}},
                         {"points_mm", std::move(points)}});
 }
 

@@ -120,6 +120,9 @@ std::string download_name(const Job& job, std::string_view ending) {
   return std::string(job.label.name.empty() ? "Scan" : job.label.name).append(ending);
 }
 
+namespace {
+
+/// The path of a scan's STL. @throws Error "no-model"
 std::filesystem::path find_model(const App& app, const Job& job) {
   if (chosen_model(job) == nullptr) {
     throw Error(ErrorCode::no_model,
@@ -128,6 +131,8 @@ std::filesystem::path find_model(const App& app, const Job& job) {
   }
   return app.store.model_file(job.id);
 }
+
+}  // namespace
 
 Response send_newest_model(App& app, const Request& request) {
   refuse_colours(request);

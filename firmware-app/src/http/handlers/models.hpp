@@ -26,9 +26,6 @@ void refuse_colours(const Request& request);
 /// @param ending  appended to the scan's name, such as ".stl"
 std::string download_name(const Job& job, std::string_view ending);
 
-/// The path of a scan's STL. @throws Error "no-model"
-std::filesystem::path find_model(const App& app, const Job& job);
-
 /// Sends a coarse mesh of the latest scan's snapshots so far, as STL.
 /// @throws Error "no-such-scan", "no-preview"
 Response send_preview(App& app, const Request& request, std::string_view id);

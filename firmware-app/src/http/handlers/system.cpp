@@ -88,11 +88,14 @@ Response send_diagnostics(App& app) {
           .body = make_zip(files, time)};
 }
 
+std::string sensor_name(const App& app) { return app.scanner.latest_status()->sensor.name; }
+
 Response send_depth_picture(App& app) {
   const auto camera = app.scanner.camera_frame();
   return {.headers = {{"Content-Type", "image/png"}, {"Cache-Control", "no-store"}},
           .body = camera->picture.width > 0 ? preview_png(camera->picture)
-                                            : preview_png(camera->frame, camera->lens.depth_unit)};
+                                            : preview_png(camera->frame, camera->lens.depth_unit,
+                                                          sensor_traits(sensor_name(app)))};
 }
 
 namespace {
@@ -159,13 +162,13 @@ namespace {
 constexpr int width = 320;
 constexpr int height = 240;
 
-// Brightness is linear in inverse depth, as the sensor's resolution is. A Kinect v1 measures from
-// 0.45 m; 2 m is behind any platform.
-constexpr double min_depth = 0.45;  // metres
-constexpr double max_depth = 2.0;
+// Brightness is linear in inverse depth, as the sensor's resolution is. Some readings are nearer
+// than the sensor's range: a Kinect v1's from 0.45 m; 2 m is behind any platform.
+constexpr double near_share = 0.9;
+constexpr double max_depth = 2.0;      // metres
 constexpr double min_brightness = 24;  // distinguishes far from no reading
 
-std::uint8_t to_brightness(double depth) {
+std::uint8_t to_brightness(double depth, double min_depth) {
   if (depth <= 0) {
     return 0;
   }
@@ -191,9 +194,9 @@ std::string sampled_png(int from_width, int from_height, Brightness brightness) 
 
 }  // namespace
 
-std::string preview_png(const DepthFrame& frame, double depth_unit) {
+std::string preview_png(const DepthFrame& frame, double depth_unit, const SensorTraits& sensor) {
   return sampled_png(frame.width, frame.height, [&](std::size_t sample) {
-    return to_brightness(frame.depth[sample] * depth_unit);
+    return to_brightness(frame.depth[sample] * depth_unit, near_share * sensor.nearest);
   });
 }
 

@@ -44,9 +44,13 @@ Response shut_machine_down(App& app);
 /// Sends the newest lines of this program's log, and of the errors that root has logged.
 Response send_messages(App& app);
 
+/// The name of the sensor, as of its last use.
+std::string sensor_name(const App& app);
+
 /// A depth frame as a picture for people: PNG, 8-bit grey, 320 x 240, near bright, far dark, black
 /// where there is no reading.
-std::string preview_png(const DepthFrame& frame, double depth_unit);
+std::string preview_png(const DepthFrame& frame, double depth_unit,
+                        const SensorTraits& sensor = {});
 
 /// A camera's picture as PNG of that size, with unchanged brightness.
 std::string preview_png(const Picture& picture);

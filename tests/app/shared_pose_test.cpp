@@ -1,9 +1,8 @@
-#include "calibration/solve_pose.hpp"
-
 #include <gtest/gtest.h>
 
 #include <array>
 
+#include "build/merged_scan.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {

@@ -1,8 +1,12 @@
+#include "octurn/model.hpp"
+
+#include <algorithm>
+#include <atomic>
 #include <span>
+#include <utility>
 
 #include "mesh/mesh_check.hpp"
 #include "octurn/error.hpp"
-#include "octurn/model.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/tiles.hpp"
 
@@ -29,6 +33,37 @@ ModelReport write_stl(const Model& model, const std::filesystem::path& file) {
   expect_facets(report.triangles);
   stl.commit();
   return report;
+}
+
+/// Reports the number of snapshots read so far.
+SnapshotSource counted(SnapshotSource snapshots,
+                       const std::function<void(BuildStep, int)>& progress) {
+  const auto done = std::make_shared<std::atomic<int>>(0);
+  const auto count = static_cast<int>(snapshots.count);
+  return {.count = snapshots.count,
+          .read = [done, count, progress, read = std::move(snapshots.read)](std::size_t index) {
+            Snapshot snapshot = read(index);
+            progress(BuildStep::adding, std::min(++*done, count));
+            return snapshot;
+          }};
+}
+
+/// Solves the scan's pose if it has none that is solved, and finds how the object moved.
+void find_faults(ModelInput& input, BuiltModel& model, const std::stop_token& stop) {
+  Scan& scan = model.scan;
+  if (input.solves_pose && !scan.solved && is_one_turn(scan)) {
+    input.progress(BuildStep::calibrating, 0);
+    ScanSolution solution =
+        solve_scan(input.folder, scan, input.snapshots(scan), input.options.threads, stop);
+    throw_if_stopped(stop);
+    take_solution(scan, solution);
+    input.findings = solution.report.findings;
+    input.seen_optics = solution.report.optics;
+    model.calibration = std::move(solution.report);
+  }
+  if (const auto move = read_object_move(input.folder)) {
+    add_move(input.findings, *move);
+  }
 }
 
 }  // namespace
@@ -76,6 +111,35 @@ ModelReport join_tiles(std::span<const std::filesystem::path> files,
                               sink);
       },
       model);
+}
+
+BuiltModel build_model(ModelInput input, const std::stop_token& stop) {
+  BuiltModel model{.scan = std::move(input.scan)};
+  const Scan& scan = model.scan;
+  find_faults(input, model, stop);
+  const ReconstructOptions& options = input.options;
+  fit_to_scan(input.options, scan);
+  const bool is_tiled = has_free_poses(scan);
+  const std::unique_ptr<Reconstructor> reconstructor =
+      is_tiled ? make_tiled_reconstructor(options, input.spool) : make_reconstructor(options);
+  std::optional<PoseChecks> checks;
+  SnapshotSource stored = input.snapshots(scan);
+  SnapshotSource added = counted(stored, input.progress);
+  if (input.is_judged && !is_tiled) {
+    checks.emplace(options.placements, options.clip, scan.shots.size(), sensor_traits(scan));
+    added = checked_snapshots(std::move(added), *checks);
+  }
+  input.progress(BuildStep::adding, 0);
+  reconstructor->add(added, stop);
+  input.progress(BuildStep::writing, static_cast<int>(stored.count));
+  model.report = input.write(*reconstructor, stored);
+  if (!model.report) {
+    throw_if_stopped(stop);
+  } else if (checks) {
+    model.quality =
+        judge(*checks, options.threads, scan, *model.report, input.findings, input.seen_optics);
+  }
+  return model;
 }
 
 }  // namespace octurn

@@ -10,6 +10,7 @@ import {act, state} from '../page.js';
 import {preparePoses, renderPoses} from './poses_view.js';
 import {screenOf} from '../screen.js';
 import {prepareSend} from './send.js';
+import {prepareShare} from './share.js';
 import {scanOf, withStarted} from '../state.js';
 import {showScanPage} from '../view.js';
 
@@ -55,6 +56,7 @@ export function prepare() {
     listen();
     prepareNotes();
     prepareSend();
+    prepareShare();
     showScanPage(render);
   }
   prepareBuilds(buildActions);

@@ -158,7 +158,7 @@ TEST_F(MeshFormats, WriteTheObjOfAnStl) {
       others.push_back(line);
     }
   }
-  EXPECT_EQ(others, (std::vector<std::string>{"# millimetres, Z up", "o Hase 1"}));
+  EXPECT_EQ(others, (std::vector<std::string>{"# millimetres, Z up", "# name Hase 1", "o Hase 1"}));
   expect_same(triangles);
 }
 

@@ -3,6 +3,7 @@
 import {prepareBuilds, renderBuilds} from './builds_view.js';
 import {start} from '../api/api.js';
 import {element, setVerbatim, show} from '../base/dom.js';
+import {prepareCompare, showCompare} from './compare.js';
 import {build, buildActions, poseActions} from './model_actions.js';
 import {nextScan} from './next.js';
 import {prepareNotes, showNotes} from './notes.js';
@@ -21,6 +22,7 @@ function render({panel, poses, builds, isAway, canStart}) {
   const scan = scanOf(state, state.selected);
   if (panel === 'details' && scan) {
     showNotes();
+    showCompare();
     show(element('next'), scan.state === 'finished' && !scan.pose_of);
     setVerbatim(element('next-name'), nextScan(scan, state.scans).name);
     element('next').setAttribute('aria-disabled', String(isAway || !canStart));
@@ -57,6 +59,7 @@ export function prepare() {
     prepareNotes();
     prepareSend();
     prepareShare();
+    prepareCompare();
     showScanPage(render);
   }
   prepareBuilds(buildActions);

@@ -480,7 +480,9 @@ Response send_collection(App& app, const Request& request) {
     const bool has_model = chosen_model(job) != nullptr;
     models.push_back(has_model ? model_in_format(app, job, extension) : fs::path());
     names.push_back(has_model ? file_name(job, extension, used) : "");
-    bytes += has_model ? fs::file_size(models.back()) : 0;
+    std::error_code none;  // of a scan without a model, or whose model was removed meanwhile
+    const std::uint64_t size = fs::file_size(models.back(), none);
+    bytes += none ? 0 : size;
     if (bytes > max_collection_bytes) {
       throw Error(ErrorCode::too_large, "these models have more than 512 MB",
                   "Choose fewer scans.");

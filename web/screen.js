@@ -2,7 +2,7 @@
 
 import {asShown, buildShown, buildsOf, isBuildBusy, isGoing, pictureUrl, runOf} from './scan/builds.js';
 import * as format from './base/format.js';
-import {found, pictureOf} from './library/library.js';
+import {found, knownTags, pictureOf} from './library/library.js';
 import {isPartOfAnother, posesOf} from './scan/poses.js';
 import {isBuilding, phaseText, progressOf} from './scan/progress.js';
 import {actionOf, badgeOf, verdictOf} from './scan/quality.js';
@@ -197,6 +197,7 @@ const rowOf = (state) => (/** @type {Scan} */ scan) => ({
   isRunning: scan.state === 'running',
   picture: pictureOf(scan),
   isChosen: state.library.chosen?.includes(scan.id) ?? false,
+  tags: scan.tags,
 });
 
 /** The library: matching scans up to the limit. @param {State} state */
@@ -211,7 +212,10 @@ function libraryOf(state) {
     summary: query ? text('count.of', {done: matches.length, total: scans.length}) : scans.length > 0 ? format.number(scans.length) : '',
     more: Math.max(matches.length - limit, 0),
     isChoosing: chosen !== null,
-    chosen: chosen?.length ?? 0,
+    chosen: scans.filter(({id}) => chosen?.includes(id)).map(({id}) => id),
+    found: matches.filter(({state: condition}) => condition !== 'running').map(({id}) => id),
+    tags: knownTags(state.scans),
+    formats: state.formats,
   };
 }
 

@@ -2,7 +2,6 @@
 
 import {tickWidth, ticks} from './scan/dial.js';
 import {element, list, part, setBadge, setText, setVerbatim, show} from './base/dom.js';
-import {renderLibrary} from './library/library_view.js';
 import {text} from './base/texts.js';
 
 /** @typedef {ReturnType<import('./screen.js').screenOf>} Screen */
@@ -140,7 +139,7 @@ function showDetails({name, trouble, verdict, size, facts, canResume, canEnd, do
 function showNotices({isAway, isScanElsewhere, problem, faults}) {
   show(element('away'), isAway);
   show(element('elsewhere'), isScanElsewhere);
-  show(element('again'), !isScanElsewhere);
+  show(element('onward'), !isScanElsewhere);
   show(element('problem'), problem !== null);
   for (const line of /** @type {const} */ (['title', 'detail', 'hint'])) {
     setText(element(`problem-${line}`), problem?.[line] ?? '');
@@ -151,6 +150,14 @@ function showNotices({isAway, isScanElsewhere, problem, faults}) {
 
 /** @type {(screen: Screen) => void} */
 let renderScanPage = () => {};
+
+/** @type {(screen: Screen) => void} */
+let renderLibrary = () => {};
+
+/** Sets the renderer of the library (library_page.js), which is loaded when it is first opened. @param {(screen: Screen) => void} render */
+export function showLibrary(render) {
+  renderLibrary = render;
+}
 
 /** Sets the renderer of a scan's page (scan_page.js), which is loaded with the first scan in view. @param {(screen: Screen) => void} render */
 export function showScanPage(render) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <string>
 #include <string_view>
 
 namespace octurn {
@@ -9,6 +10,13 @@ namespace octurn {
 inline bool is_one_line(std::string_view text) {
   return std::ranges::none_of(
       text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; });
+}
+
+/// Text with spaces in place of its control characters.
+inline std::string to_one_line(std::string text) {
+  std::ranges::replace_if(
+      text, [](char c) { return static_cast<unsigned char>(c) < ' ' || c == 127; }, ' ');
+  return text;
 }
 
 }  // namespace octurn

@@ -240,6 +240,8 @@ void unpack_zip(const fs::path& archive, const fs::path& folder, const ToTarget&
   });
 }
 
+constexpr unsigned long utf8_names = 1UL << 11U;  // APPNOTE.TXT, section 4.4.4, bit 11
+
 struct ZipWriter::Archive {
   zipFile zip = nullptr;
   bool has_file = false;
@@ -275,10 +277,13 @@ void ZipWriter::begin(const std::string& name, ZipMethod method) {
   zip_fileinfo info{};
   info.tmz_date = {
       .tm_sec = 0, .tm_min = 0, .tm_hour = 0, .tm_mday = 1, .tm_mon = 0, .tm_year = 1980};
-  const bool begun = archive_->close_file() &&
-                     zipOpenNewFileInZip64(archive_->zip, name.c_str(), &info, nullptr, 0, nullptr,
-                                           0, nullptr, method == ZipMethod::stored ? 0 : Z_DEFLATED,
-                                           Z_DEFAULT_COMPRESSION, 0) == ZIP_OK;
+  const bool is_ascii = std::ranges::none_of(name, [](char c) { return (c & 0x80) != 0; });
+  const bool begun =
+      archive_->close_file() &&
+      zipOpenNewFileInZip4_64(archive_->zip, name.c_str(), &info, nullptr, 0, nullptr, 0, nullptr,
+                              method == ZipMethod::stored ? 0 : Z_DEFLATED, Z_DEFAULT_COMPRESSION,
+                              0, -MAX_WBITS, DEF_MEM_LEVEL, Z_DEFAULT_STRATEGY, nullptr, 0, 0,
+                              is_ascii ? 0 : utf8_names, 0) == ZIP_OK;
   if (!begun) {
     throw_full(temporary_);
   }

@@ -44,7 +44,7 @@ class ColouredFormats : public testing::Test {
 };
 
 TEST_F(ColouredFormats, TheObjHasThemBehindEachPlaceAsShares) {
-  write_obj(stl(), "Scan", file("Scan.obj"), colours_);
+  write_obj({.facets = stl(), .colours = colours_}, file("Scan.obj"));
   std::istringstream obj(content_of(file("Scan.obj")));
   std::size_t vertices = 0;
   for (std::string line; std::getline(obj, line);) {
@@ -65,7 +65,7 @@ TEST_F(ColouredFormats, TheObjHasThemBehindEachPlaceAsShares) {
 }
 
 TEST_F(ColouredFormats, ThePlyHasThemBehindEachPlace) {
-  write_ply(stl(), file("Scan.ply"), colours_);
+  write_ply({.facets = stl(), .colours = colours_}, file("Scan.ply"));
   const std::string ply = content_of(file("Scan.ply"));
   const std::string end = "end_header\n";
   const std::size_t begin = ply.find(end) + end.size();
@@ -81,7 +81,7 @@ TEST_F(ColouredFormats, ThePlyHasThemBehindEachPlace) {
 }
 
 TEST_F(ColouredFormats, TheGlbHasThemLinear) {
-  write_glb(stl(), "Scan", file("Scan.glb"), colours_);
+  write_glb({.facets = stl(), .colours = colours_}, file("Scan.glb"));
   const std::string glb = content_of(file("Scan.glb"));
   std::uint32_t json_bytes = 0;
   std::memcpy(&json_bytes, &glb[12], sizeof json_bytes);
@@ -101,7 +101,7 @@ TEST_F(ColouredFormats, TheGlbHasThemLinear) {
 }
 
 TEST_F(ColouredFormats, The3mfHasThemInAGroup) {
-  write_3mf(stl(), "Scan", "", file("Scan.3mf"), colours_);
+  write_3mf({.facets = stl(), .colours = colours_}, file("Scan.3mf"));
   const std::unique_ptr<void, decltype(&unzClose)> zip(unzOpen64(file("Scan.3mf").c_str()),
                                                        &unzClose);
   ASSERT_EQ(unzLocateFile(zip.get(), "3D/3dmodel.model", 0), UNZ_OK);

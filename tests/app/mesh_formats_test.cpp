@@ -115,7 +115,7 @@ TEST_F(MeshFormats, ListNoMoreCornersThanFitIntoTheMemoryOfARequest) {
 }
 
 TEST_F(MeshFormats, WriteThePlyOfAnStl) {
-  write_ply(stl(), file("Scan.ply"));
+  write_ply({.facets = stl()}, file("Scan.ply"));
   const std::string ply = content_of(file("Scan.ply"));
   const std::string end = "end_header\n";
   std::size_t at = ply.find(end) + end.size();
@@ -139,7 +139,7 @@ TEST_F(MeshFormats, WriteThePlyOfAnStl) {
 }
 
 TEST_F(MeshFormats, WriteTheObjOfAnStl) {
-  write_obj(stl(), "Hase\n1", file("Scan.obj"));
+  write_obj({.facets = stl(), .name = "Hase\n1"}, file("Scan.obj"));
   std::istringstream obj(content_of(file("Scan.obj")));
   std::vector<Vertex> vertices;
   std::vector<Triangle> triangles;
@@ -158,7 +158,7 @@ TEST_F(MeshFormats, WriteTheObjOfAnStl) {
       others.push_back(line);
     }
   }
-  EXPECT_EQ(others, (std::vector<std::string>{"# millimetres, Z up", "o Hase 1"}));
+  EXPECT_EQ(others, (std::vector<std::string>{"# millimetres, Z up", "# name Hase 1", "o Hase 1"}));
   expect_same(triangles);
 }
 
@@ -175,7 +175,7 @@ TEST_F(MeshFormats, AreFoundByTheEndingsOfTheirFiles) {
 }
 
 TEST_F(MeshFormats, WriteTheGlbOfAnStl) {
-  write_glb(stl(), "Hase \"1\"", file("Scan.glb"));
+  write_glb({.facets = stl(), .name = "Hase \"1\""}, file("Scan.glb"));
   const std::string glb = content_of(file("Scan.glb"));
   std::size_t at = 0;
   EXPECT_EQ(glb.substr(0, 4), "glTF");
@@ -235,7 +235,7 @@ std::vector<Number> values(const std::string& xml, const std::string& attribute)
 }
 
 TEST_F(MeshFormats, WriteThe3mfOfAnStl) {
-  write_3mf(stl(), "Hase & <Igel>", "a picture", file("Scan.3mf"));
+  write_3mf({.facets = stl(), .name = "Hase & <Igel>", .thumbnail = "a picture"}, file("Scan.3mf"));
   const auto files = unzipped(file("Scan.3mf"));
   ASSERT_EQ(files.size(), 4U);
   EXPECT_EQ(files.at("Metadata/thumbnail.png"), "a picture");
@@ -255,6 +255,43 @@ TEST_F(MeshFormats, WriteThe3mfOfAnStl) {
     triangles.push_back({corner(v1[i]), corner(v2.at(i)), corner(v3.at(i))});
   }
   expect_same(triangles);
+}
+
+TEST_F(MeshFormats, TellWhoseTheModelIs) {
+  const FacetFile facets = stl();
+  const MeshModel model{.facets = facets,
+                        .name = "Hase",
+                        .inventory_number = "<17> & 3",
+                        .author = "Jane\nend_header",
+                        .licence = "CC BY 4.0"};
+  for (const MeshFormat& format : mesh_formats()) {
+    format.write(model, file("told"));
+    const std::string told = format.extension == ".3mf"
+                                 ? unzipped(file("told")).at("3D/3dmodel.model")
+                                 : content_of(file("told"));
+    const auto has = [&](const std::string& text) { return told.find(text) != told.npos; };
+    if (format.extension == ".3mf") {
+      EXPECT_TRUE(has(R"(<metadata name="Designer">Jane end_header</metadata>)"));
+      EXPECT_TRUE(has(R"(<metadata name="LicenseTerms">CC BY 4.0</metadata>)"));
+      EXPECT_TRUE(has(R"(<metadata name="octurn:InventoryNumber">&lt;17&gt; &amp; 3</metadata>)"));
+      EXPECT_TRUE(has(R"(xmlns:octurn=")"));
+    } else if (format.extension == ".glb") {
+      EXPECT_TRUE(has(R"("copyright":"Jane\nend_header, CC BY 4.0")"));
+      EXPECT_TRUE(has(R"("inventory_number":"<17> & 3")"));
+    } else {
+      const std::string begin = format.extension == ".ply" ? "\ncomment " : "\n# ";
+      EXPECT_TRUE(has(begin + "name Hase" + begin + "inventory number <17> & 3" + begin +
+                      "author Jane end_header" + begin + "licence CC BY 4.0\n"));
+    }
+    format.write({.facets = facets, .name = "Hase"}, file("told"));
+    const std::string silent = format.extension == ".3mf"
+                                   ? unzipped(file("told")).at("3D/3dmodel.model")
+                                   : content_of(file("told"));
+    for (const char* const word : {"author", "opyright", "Designer", "LicenseTerms", "nventory"}) {
+      EXPECT_EQ(silent.find(std::string(word) + "\""), silent.npos) << format.extension << word;
+      EXPECT_EQ(silent.find(std::string(word) + " "), silent.npos) << format.extension << word;
+    }
+  }
 }
 
 TEST_F(MeshFormats, HaveNothingOfAnStlThatIsCutShort) {

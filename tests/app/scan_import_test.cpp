@@ -136,10 +136,14 @@ TEST_F(ScanImport, DropsALabelThatCannotBeOneAlsoFromTheDisk) {
   std::vector<ArchivedFile> files = files_of(one_image_scan(2));
   files.push_back({"name.txt", std::string(200, 'x')});
   files.push_back({"notes.txt", "a note\nof two lines"});
+  files.push_back({"tags.txt", "one\none\n"});
+  files.push_back({"author.txt", "Jane Doe"});
   EXPECT_EQ(imported_and_read_back({files}), 1U);
   const Job job = ScanStore(data_.path()).list().front();
   EXPECT_EQ(job.label.name, "");
   EXPECT_EQ(job.label.notes, "a note\nof two lines");
+  EXPECT_EQ(job.label.tags, "");
+  EXPECT_EQ(job.label.author, "Jane Doe");
 }
 
 }  // namespace

@@ -129,36 +129,65 @@ TEST(ScanStore, RemovesAScanWithEverythingInIt) {
   EXPECT_EQ(code_thrown_by([&] { store.discard(job.id); }), "no-such-scan");
 }
 
-TEST(ScanStore, KeepsTheNameAndTheNotesThatAPersonWroteOnAScan) {
+TEST(ScanStore, KeepsWhatAPersonWroteOnAScan) {
   const TemporaryFolder folder;
   std::string id;
+  const auto expect_label = [&](const ScanStore& store) {
+    const ScanLabel label = store.get(id).label;
+    EXPECT_EQ(label.name, "Hase, groß");
+    EXPECT_EQ(label.notes, "Plaster, 1920.\nThe left ear is glued.");
+    EXPECT_EQ(label.tags, "Grave 3\nplaster\n");
+    EXPECT_EQ(label.inventory_number, "2026.17.3");
+    EXPECT_EQ(label.author, "Jane Doe");
+    EXPECT_EQ(label.licence, "CC BY 4.0");
+  };
   {
     ScanStore store(folder.path());
-    const Job job = store.create({});
+    const Job job = store.create({}, {}, {.author = "Jane Doe", .licence = "CC BY 4.0"});
     id = job.id;
-    store.label(id, {.name = "Hase, groß"});
-    store.label(id, {.notes = "Plaster, 1920.\nThe left ear is glued."});
-    store.save(job);  // the worker's copy has neither
-    EXPECT_EQ(store.find(id)->label.name, "Hase, groß");
-    EXPECT_EQ(store.find(id)->label.notes, "Plaster, 1920.\nThe left ear is glued.");
+    EXPECT_EQ(job.label.author, "Jane Doe");
+    store.label(id, {.name = "Hase, groß", .inventory_number = "2026.17.3"});
+    store.label(id,
+                {.notes = "Plaster, 1920.\nThe left ear is glued.", .tags = "Grave 3\nplaster\n"});
+    store.save(Job{.id = id});  // the worker's copy has none of them
+    expect_label(store);
   }
-  const ScanStore again(folder.path());
-  EXPECT_EQ(again.find(id)->label.name, "Hase, groß");
-  EXPECT_EQ(again.find(id)->label.notes, "Plaster, 1920.\nThe left ear is glued.");
+  expect_label(ScanStore(folder.path()));
+}
+
+/// Whether a label may have that text.
+bool is_valid(std::string_view key, const std::string& text) {
+  return std::ranges::find(label_texts(), key, &LabelText::key)->is_valid(text);
 }
 
 TEST(ScanLabel, HasANameOfOneLineAndNotesOfSeveral) {
-  EXPECT_TRUE(is_name(""));
-  EXPECT_TRUE(is_notes("a\n\tb"));
-  EXPECT_FALSE(is_name("a\nb"));
-  EXPECT_FALSE(is_notes("a\x1b[31m"));
+  EXPECT_TRUE(is_valid("name", ""));
+  EXPECT_TRUE(is_valid("notes", "a\n\tb"));
+  EXPECT_FALSE(is_valid("name", "a\nb"));
+  EXPECT_FALSE(is_valid("notes", "a\x1b[31m"));
   std::string umlauts;
   for (int i = 0; i < 2000; ++i) {
-    EXPECT_EQ(is_name(umlauts), i <= 100) << i;
+    EXPECT_EQ(is_valid("name", umlauts), i <= 100) << i;
     umlauts += "ä";
   }
-  EXPECT_TRUE(is_notes(umlauts));
-  EXPECT_FALSE(is_notes(umlauts + "ä"));
+  EXPECT_TRUE(is_valid("notes", umlauts));
+  EXPECT_FALSE(is_valid("notes", umlauts + "ä"));
+}
+
+TEST(ScanLabel, HasFewDifferentTagsThatAListSeparatedByCommasCanShow) {
+  EXPECT_TRUE(is_valid("tags", ""));
+  EXPECT_TRUE(is_valid("tags", "Grab 3\nGefäß\n"));
+  EXPECT_FALSE(is_valid("tags", "a\na\n"));
+  EXPECT_FALSE(is_valid("tags", "a\n\nb\n"));
+  EXPECT_FALSE(is_valid("tags", "a, b\n"));
+  EXPECT_FALSE(is_valid("tags", "a\tb\n"));
+  EXPECT_TRUE(is_valid("tags", std::string(40, 'x') + "\n"));
+  EXPECT_FALSE(is_valid("tags", std::string(41, 'x') + "\n"));
+  std::string tags;
+  for (int i = 1; i <= 21; ++i) {
+    tags += std::to_string(i) + "\n";
+    EXPECT_EQ(is_valid("tags", tags), i <= 20) << i;
+  }
 }
 
 TEST(ScanStore, HasAnotherRevisionAfterEveryChangeThatAListShows) {

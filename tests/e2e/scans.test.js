@@ -84,7 +84,7 @@ test('what somebody else does to the scans is seen without a reload, and a refus
   await page.keyboard.press('Enter');
   await rows.nth(1).getByText(longest).waitFor();
 
-  await assert.rejects(ask(scanner, `scans/${first.id}`, 'PATCH', {}), /neither .*name.* nor .*notes/);
+  await assert.rejects(ask(scanner, `scans/${first.id}`, 'PATCH', {}), /none of .*name.*, .*notes/);
   await ask(scanner, `scans/${first.id}`, 'PATCH', {name: 'Elsewhere'});
   await rows.nth(1).getByText('Elsewhere').waitFor();
   await page.route('**/api/v1/scans', (route) => route.abort());  // as if the list came too late

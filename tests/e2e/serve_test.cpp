@@ -145,7 +145,9 @@ TEST(Serve, NamesNotesAndDeletesAScan) {
             std::string::npos);
   for (const char* const body :
        {R"({"name": 5})", R"({"nom": "x"})", R"({"name": "a\nb"})", "", "[]", "{",
-        R"({"name": "\ud800"})", R"({"notes": 5})", R"({"notes": "a\u0007"})"}) {
+        R"({"name": "\ud800"})", R"({"notes": 5})", R"({"notes": "a\u0007"})", R"({"tags": "a"})",
+        R"({"tags": ["a", "a"]})", R"({"tags": [5]})", R"({"tags": ["a\nb"]})",
+        R"({"author": null})", R"({"licence": "x", "nom": "x"})"}) {
     EXPECT_EQ(request(daemon.port(), "PATCH", scan, body).status, 400) << body;
   }
   EXPECT_EQ(parsed(daemon.get(scan))["name"], "Hase");
@@ -154,6 +156,48 @@ TEST(Serve, NamesNotesAndDeletesAScan) {
   EXPECT_EQ(daemon.get(scan).status, 404);
   EXPECT_EQ(daemon.get("/Scan.stl").status, 404);
   EXPECT_TRUE(fs::is_empty(folder.path() / "data" / "scans"));
+}
+
+TEST(Serve, LabelsAScanAtItsStartAndListsItInATable) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  for (const char* const wrong :
+       {R"({"snapshots": 3, "name": 5})", R"({"snapshots": 3, "tags": 5})"}) {
+    EXPECT_EQ(parsed(daemon.post("/api/v1/scans", wrong))["code"], "bad-name") << wrong;
+  }
+  EXPECT_EQ(daemon.get("/api/v1/scans.zip").status, 404) << "there is no model";
+  json body = json::parse(quick);
+  body["name"] = "=Hase; \"3\"";
+  body["tags"] = {"Grave 3", "plaster"};
+  body["licence"] = "CC0";
+  const std::string scan = daemon.start(body.dump());
+  const json done = daemon.wait_until_done(scan);
+  EXPECT_EQ(done["tags"], body["tags"]);
+  EXPECT_EQ(done["licence"], "CC0");
+
+  const std::string id = done["id"];
+  const Reply table = daemon.get("/api/v1/scans.csv?ids=" + id + "," + id);
+  EXPECT_EQ(table.header("Content-Type"), "text/csv; charset=utf-8");
+  EXPECT_EQ(std::ranges::count(table.body, '\n'), 2) << "once, and the names of the columns";
+  EXPECT_NE(table.body.find("\r\n\"" + id +
+                            "\",\"'=Hase; \"\"3\"\"\",\"\",\"Grave 3, plaster\",\"\","
+                            "\"CC0\",\"\","),
+            std::string::npos)
+      << table.body;
+  EXPECT_EQ(daemon.get("/api/v1/scans.csv").body, table.body);
+  const Reply models = daemon.get("/api/v1/scans.zip?format=ply&ids=" + id);
+  EXPECT_EQ(models.header("Content-Type"), "application/zip");
+  EXPECT_NE(models.body.find("=Hase; _3_.ply"), std::string::npos);
+  EXPECT_NE(models.body.find(daemon.get(scan + "/Scan.ply").body), std::string::npos);
+  for (const char* const query : {"ids=20261121-081500-3f2a", "ids=..", "ids="}) {
+    EXPECT_EQ(daemon.get(std::string("/api/v1/scans.zip?") + query).status, 404) << query;
+  }
+  for (const char* const query : {"format=..", "format=doc", "id=", "format=stl&format=stl"}) {
+    EXPECT_EQ(daemon.get(std::string("/api/v1/scans.zip?") + query).status, 400) << query;
+  }
+  for (const auto& entry : fs::directory_iterator(folder.path() / "data" / "scans")) {
+    EXPECT_EQ(entry.path().filename(), id) << "no archive is left behind";
+  }
 }
 
 TEST(Serve, ShowsWhatTheSensorSees) {

@@ -4,8 +4,8 @@ import {test} from 'node:test';
 import {readColours} from '../../web/model/colours.js';
 
 /** A PLY as the scanner writes it. @param {{colours: number[][], faces: number[][], head?: string}} model @returns {ArrayBuffer} */
-function ply({colours, faces, head = 'property uchar red\nproperty uchar green\nproperty uchar blue\n'}) {
-  const text = `ply\nformat binary_little_endian 1.0\ncomment millimetres, Z up\nelement vertex ${colours.length}
+function ply({colours, faces, head = 'property uchar red\nproperty uchar green\nproperty uchar blue\n', comments = ''}) {
+  const text = `ply\nformat binary_little_endian 1.0\ncomment millimetres, Z up\n${comments}element vertex ${colours.length}
 property float x\nproperty float y\nproperty float z\n${head}element face ${faces.length}
 property list uchar uint vertex_indices\nproperty uchar filled\nend_header\n`;
   const vertices = colours.map((colour) => [...Buffer.from(new Float32Array([10, 13, 3.25]).buffer), ...colour]);
@@ -17,6 +17,12 @@ const model = {colours: [[1, 2, 3], [4, 5, 6], [7, 8, 9], [10, 13, 250]], faces:
 
 test('each corner of each triangle gets the colour of its vertex, in the order of the faces', () => {
   assert.deepEqual([...readColours(ply(model))], [1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 13, 250, 7, 8, 9, 4, 5, 6]);
+});
+
+test('what somebody wrote about the scan does not matter', () => {
+  const comments = ['name element vertex 99', `author ${'ü'.repeat(100)}`, `licence ${'\u{1F3FA}'.repeat(100)}`, 'inventory number end_header']
+      .map((words) => `comment ${words}\n`).join('').repeat(2);
+  assert.deepEqual(readColours(ply({...model, comments})), readColours(ply(model)));
 });
 
 test('a file that is cut short, goes on, or has no colours is refused', () => {

@@ -10,7 +10,7 @@ const device = {state: 'ready', name: 'Kinect v1', simulated: false, message: ''
 export const status = {version: '0.1.0', sensor: device, turntable: {...device, name: 'stepper'}, disk_free_bytes: 12.3e9, appliance: false, scan: null, newest: null, scans_revision: 1};
 
 export const running = {
-  id: 'run', name: '', state: 'running', phase: 'capturing', created: '2026-11-21T08:15:00Z', snapshots_done: 9,
+  id: 'run', name: '', notes: '', tags: [], inventory_number: '', author: '', licence: '', state: 'running', phase: 'capturing', created: '2026-11-21T08:15:00Z', snapshots_done: 9,
   snapshots_total: 36, seconds_elapsed: 12.3, seconds_left: 40.1, seconds_until_pause: null, late_pulses: 0, slips: 0, seconds_settling: 0, settings, error: null, model: null, pose_of: null, has_colours: false, has_views: true, poses: [],
   preview: null,
 };

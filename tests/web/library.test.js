@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {found, initial, pictureOf, withToggled} from '../../web/library/library.js';
+import {found, initial, knownTags, pictureOf, tagsIn, withAll, withToggled} from '../../web/library/library.js';
 import {finished, running} from './examples.js';
 
 const large = {...finished, model: {...finished.model, size_mm: [300, 300, 300]}};
@@ -32,6 +32,20 @@ test('several are chosen one by one', () => {
   const both = withToggled(withToggled(initial, 'a'), 'b');
   assert.deepEqual(both.chosen, ['a', 'b']);
   assert.deepEqual(withToggled(both, 'a').chosen, ['b']);
+});
+
+test('all that are found are chosen at once, and none the second time', () => {
+  const some = withToggled({...initial, chosen: []}, 'a');
+  assert.deepEqual(withAll(some, ['a', 'b']).chosen, ['a', 'b']);
+  assert.deepEqual(withAll(withAll(some, ['a', 'b']), ['a', 'b']).chosen, []);
+});
+
+test('scans are found by their tags and numbers, and tags are written with commas between them', () => {
+  const tagged = [{...finished, id: 'a', tags: ['Grab 10', 'Gefäß'], inventory_number: '2026.17'}, {...finished, id: 'b', tags: ['Grab 9', 'Gefäß']}];
+  const idsOf = (query) => found(tagged, {...initial, query}, ({name}) => name).map(({id}) => id).join('');
+  assert.deepEqual(['gefaß', 'grab 10', '2026.17'].map(idsOf), ['ab', 'a', 'a']);
+  assert.deepEqual(knownTags(tagged), ['Gefäß', 'Grab 9', 'Grab 10']);
+  assert.deepEqual(tagsIn(' Grab 9,,Gefäß , Grab 9'), ['Grab 9', 'Gefäß']);
 });
 
 test('another model of a scan has another picture, and a scan without one has none', () => {

@@ -14,6 +14,8 @@ import {refusalText} from '../base/wording.js';
  * @property {number} threshold_m2
  * @property {'auto' | 'told'} calibrate  whether a scan solves the sensor's pose itself
  * @property {number[]} clip_mm  x0 y0 z0 x1 y1 z1
+ * @property {number[][]} [platform_from_sensor]
+ * @property {number} [depth_scale]
  *
  * @typedef {import('../base/wording.js').Parameters} Parameters
  * @typedef {{code: string, detail: string, hint: string, parameters?: Parameters, places_mm?: number[][]}} Reason  places_mm: affected places, in the model's frame
@@ -39,6 +41,10 @@ import {refusalText} from '../base/wording.js';
  * @property {string} id
  * @property {string} name
  * @property {string} notes
+ * @property {string[]} tags
+ * @property {string} inventory_number
+ * @property {string} author
+ * @property {string} licence
  * @property {'running' | 'paused' | 'finished' | 'cancelled' | 'failed' | 'interrupted'} state
  * @property {'starting' | 'turning' | 'capturing' | 'calibrating' | 'rebuilding' | 'registering' | 'building' | 'done'} phase
  * @property {string} created
@@ -61,6 +67,8 @@ import {refusalText} from '../base/wording.js';
  * @property {boolean} [has_colours]  whether its pictures are coloured
  * @property {boolean} [has_views]  whether its models tell how many snapshots saw a place
  * @property {{url: string, snapshots: number} | null} preview  mesh of the snapshots so far; null unless it runs
+ *
+ * @typedef {Partial<Pick<Scan, 'name' | 'notes' | 'tags' | 'inventory_number' | 'author' | 'licence'>>} Label
  *
  * @typedef {Object} Device
  * @property {'unknown' | 'ready' | 'missing' | 'failed'} state
@@ -222,7 +230,7 @@ export const configured = async () => {
 export const defaults = async () => (await configured()).defaults;
 
 /**
- * @param {Partial<Settings>} settings
+ * @param {Partial<Settings> & Label} settings
  * @returns {Promise<Scan>}
  */
 export const start = (settings) => json('scans', sending('POST', settings));
@@ -243,7 +251,7 @@ export const resume = (id) => json(`${scan(id)}/resume`, sending('POST'));
 export const importScan = (file) => json('scans/import',
     {method: 'POST', headers: {'Content-Type': 'application/octet-stream'}, body: file}, patienceWithFile);
 
-/** @param {string} id @param {{name?: string, notes?: string}} what @returns {Promise<Scan>} */
+/** @param {string} id @param {Label} what @returns {Promise<Scan>} */
 export const label = (id, what) => json(scan(id), sending('PATCH', what));
 
 /** @param {string} id */

@@ -34,7 +34,7 @@ export function found(scans, {query, order}, nameOf) {
   const words = folded(query).split(/\s+/).filter(Boolean);
   const matches = words.length === 0 ? scans :
     scans.filter((scan) => {
-      const text = folded(`${nameOf(scan)} ${format.when(scan.created)}`);
+      const text = folded([nameOf(scan), format.when(scan.created), scan.inventory_number, ...scan.tags].join(' '));
       return words.every((word) => text.includes(word));
     });
   switch (order) {
@@ -50,6 +50,17 @@ export const withToggled = (library, id) => {
   const chosen = library.chosen ?? [];
   return {...library, chosen: chosen.includes(id) ? chosen.filter((other) => other !== id) : [...chosen, id]};
 };
+
+/** Selects all these scans, or none if all are selected already. @param {Library} library @param {string[]} ids @returns {Library} */
+export const withAll = (library, ids) =>
+  ({...library, chosen: ids.every((id) => library.chosen?.includes(id)) ? [] : ids});
+
+/** The tags of a text that commas separate, each once. @param {string} text @returns {string[]} */
+export const tagsIn = (text) => [...new Set(text.split(',').map((tag) => tag.trim()).filter(Boolean))];
+
+/** The tags of all scans, sorted. @param {Scan[]} scans @returns {string[]} */
+export const knownTags = (scans) => [...new Set(scans.flatMap(({tags}) => tags))]
+    .sort((a, b) => a.localeCompare(b, locale, {numeric: true}));
 
 /** The URL of a model's thumbnail, different for each build. @param {Scan} scan */
 export const pictureOf = ({id, model, build}) => model ? `api/v1/scans/${id}/thumbnail.png?build=${build ?? 0}` : '';

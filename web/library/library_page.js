@@ -4,22 +4,47 @@ import {prepareBin} from '../scan/bin.js';
 import {element} from '../base/dom.js';
 import {note, noted} from '../base/storage.js';
 import * as library from './library.js';
-import {showLibrary} from './library_view.js';
+import {renderLibrary} from './library_view.js';
 import {change, state} from '../page.js';
-import {emptyBin, importScan, remove, removeChosen, rename, restore} from '../scan/scan_actions.js';
+import {screenOf} from '../screen.js';
+import {emptyBin, importScan, remove, removeChosen, rename, restore, tagChosen} from '../scan/scan_actions.js';
 import * as states from '../state.js';
+import {showLibrary} from '../view.js';
 
 const memory = 'octurn-search';  // storage key of the search, until the tab is closed
+
+/** Shows the scans that match a text. @param {string} query */
+function search(query) {
+  element('library-query').value = query;
+  note(memory, query, 'sessionStorage');
+  change(states.withLibrary(state, {query, limit: library.step}));
+}
+
+/** The handlers for the chosen scans. */
+function listenForChosen() {
+  element('choose-all').addEventListener('click', () =>
+    change({...state, library: library.withAll(state.library, screenOf(state).found)}));
+  element('chosen-format').addEventListener('change', () => change(state));
+  element('delete-chosen').addEventListener('click', removeChosen);
+  element('tag-form').addEventListener('submit', async (/** @type {Event} */ event) => {
+    event.preventDefault();
+    const field = element('tag-chosen');
+    if (state.library.chosen?.length && field.value.trim()) {
+      await tagChosen(field.value.trim());
+      field.value = '';
+    }
+  });
+  for (const id of ['chosen-zip', 'chosen-csv']) {
+    element(id).addEventListener('click', (/** @type {Event} */ event) => state.library.chosen?.length || event.preventDefault());
+  }
+}
 
 /** Attaches the handlers of library.html. */
 export function prepare() {
   const click = (/** @type {string} */ id, /** @type {() => void} */ action) => element(id).addEventListener('click', action);
   const query = element('library-query');
   query.value = noted(memory, 'sessionStorage') ?? '';
-  query.addEventListener('input', () => {
-    note(memory, query.value, 'sessionStorage');
-    change(states.withLibrary(state, {query: query.value, limit: library.step}));
-  });
+  query.addEventListener('input', () => search(query.value));
   element('library-order').addEventListener('change', (/** @type {any} */ event) =>
     change(states.withLibrary(state, {order: event.target.value})));
   element('import').addEventListener('change', (/** @type {any} */ event) => {
@@ -29,7 +54,7 @@ export function prepare() {
   });
   click('show-more', () => change(states.withLibrary(state, {limit: state.library.limit + library.step})));
   click('choose', () => change(states.withLibrary(state, {chosen: state.library.chosen ? null : []})));
-  click('delete-chosen', removeChosen);
+  listenForChosen();
   element('rows').addEventListener('change', (/** @type {any} */ event) => {
     if (event.target.type === 'checkbox') {
       change({...state, library: library.withToggled(state.library, event.target.closest('.scan').dataset.key)});
@@ -38,7 +63,9 @@ export function prepare() {
   element('rows').addEventListener('click', (/** @type {any} */ event) => {
     const id = event.target.closest('.scan').dataset.key;
     const what = event.target.closest('[data-do]')?.dataset.do;
-    if (what === 'rename') {
+    if (what === 'tag') {
+      search(event.target.textContent);
+    } else if (what === 'rename') {
       rename(id);
     } else if (what === 'delete') {
       const card = event.target.closest('.scan');
@@ -48,6 +75,6 @@ export function prepare() {
     }
   });
   prepareBin({restore: (id) => restore([id]), empty: emptyBin});
-  showLibrary();
+  showLibrary(renderLibrary);
   change(states.withLibrary(state, {query: query.value}));
 }

@@ -21,17 +21,36 @@ function showPicture(frame, url) {
 }
 
 /** @param {Screen} screen */
-function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
+function showChosen({isChoosing, chosen, tags, formats}) {
+  element('choose').setAttribute('aria-pressed', String(isChoosing));
+  show(element('chosen'), isChoosing);
+  list(element('library-tags'), tags, (tag) => tag, 'tag-option', (option, tag) => {
+    option.value = tag;
+  });
+  list(element('chosen-format'), formats, (format) => format, 'format-option', (option, format) => {
+    option.value = format;
+    setText(option, format.toUpperCase());
+  });
+  for (const [id, file] of [['chosen-zip', `scans.zip?format=${element('chosen-format').value}&ids=`], ['chosen-csv', 'scans.csv?ids=']]) {
+    element(id).href = `api/v1/${file}${chosen.join()}`;
+  }
+  setText(part(element('chosen-zip'), 'span'), text('library.zip', {count: chosen.length}));
+  setText(element('delete-chosen'), text('library.delete-chosen', {count: chosen.length}));
+  for (const control of element('chosen').querySelectorAll('[data-needs]')) {
+    control.setAttribute('aria-disabled', String(chosen.length === 0));
+  }
+}
+
+/** @param {Screen} screen */
+export function renderLibrary(screen) {
+  const {rows, isListed, count, summary, more, isChoosing} = screen;
   show(element('no-scans'), isListed && count === 0);
   show(element('library-tools'), count > 1 || isChoosing);
   setText(element('library-count'), summary);
   show(element('no-match'), count > 0 && rows.length === 0);
   show(element('show-more'), more > 0);
   setText(element('show-more'), text('library.more', {count: more}));
-  element('choose').setAttribute('aria-pressed', String(isChoosing));
-  show(element('delete-chosen'), isChoosing);
-  setText(element('delete-chosen'), text('library.delete-chosen', {count: chosen}));
-  element('delete-chosen').setAttribute('aria-disabled', String(chosen === 0));
+  showChosen(screen);
   list(element('rows'), rows, ({id}) => id, 'row', (item, row) => {
     item.classList.toggle('current', row.isCurrent);
     showPicture(part(item, '.scan-picture'), row.picture);
@@ -46,6 +65,10 @@ function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
     setBadge(part(item, '.badge'), row.badge);
     setText(part(item, '.scan-when'), row.when);
     setText(part(item, '.scan-about'), row.about);
+    list(part(item, '.scan-tags'), row.tags, (tag) => tag, 'tag', (button, tag) => {
+      setVerbatim(button, tag);
+      button.title = text('library.tagged', {tag});
+    });
     for (const action of item.querySelectorAll('[data-do]')) {
       action.setAttribute('aria-label', text('library.action', {action: action.title, name: row.name}));
     }
@@ -54,22 +77,4 @@ function showRows({rows, isListed, count, summary, more, isChoosing, chosen}) {
     download.href = row.download ?? '';
     show(part(item, '[data-do=delete]'), !row.isRunning);
   });
-}
-
-let isHere = false;  // whether the fragment is loaded
-/** @type {Screen | null} */
-let last = null;
-
-/** @param {Screen} screen */
-export function renderLibrary(screen) {
-  last = screen;
-  if (isHere) {
-    showRows(screen);
-  }
-}
-
-/** Called when the fragment is loaded. */
-export function showLibrary() {
-  isHere = true;
-  last && showRows(last);
 }

@@ -6,6 +6,8 @@ import {sentence} from '../base/format.js';
 import {text} from '../base/texts.js';
 
 const vertexBytes = 15;  // x, y, z as floats; red, green, blue
+const headEnd = '\nend_header\n';
+const maxHead = 4000;  // bytes; its comments are the name, the number, the author and the licence, of 100 characters each
 const faceBytes = 14;  // number of corners, three vertex indices, whether it was filled in
 
 /**
@@ -16,9 +18,9 @@ const faceBytes = 14;  // number of corners, three vertex indices, whether it wa
  */
 export function readColours(file) {
   const bytes = new Uint8Array(file);
-  const head = new TextDecoder('latin1').decode(bytes.subarray(0, 1000)).split('end_header\n')[0];
-  const count = (/** @type {string} */ name) => Number(new RegExp(`element ${name} (\\d+)`).exec(head)?.[1]);
-  const vertices = head.length + 'end_header\n'.length;
+  const head = new TextDecoder('latin1').decode(bytes.subarray(0, maxHead)).split(headEnd)[0];
+  const count = (/** @type {string} */ name) => Number(new RegExp(`^element ${name} (\\d+)`, 'm').exec(head)?.[1]);
+  const vertices = head.length + headEnd.length;
   const faces = vertices + count('vertex') * vertexBytes;
   if (!head.includes('property uchar red') || bytes.length !== faces + count('face') * faceBytes) {
     throw new Error(text('view.stl-short'));

@@ -8,7 +8,7 @@ const maxAround = 64;  // corners at one place that are looked at; more than a m
  * @param {Float32Array} positions
  * @returns {Int32Array} for each corner the next one of its ring
  */
-function rings(positions) {
+export function rings(positions) {
   const corners = positions.length / 3;
   const bits = new Uint32Array(positions.buffer, positions.byteOffset, positions.length);
   const slots = new Int32Array(2 ** Math.ceil(Math.log2(2 * corners))).fill(-1);

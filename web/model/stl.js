@@ -18,7 +18,7 @@ const filledIn = 1;
  */
 
 /** @param {Float32Array} positions */
-function bounds(positions) {
+export function bounds(positions) {
   const min = [Infinity, Infinity, Infinity];
   const max = [-Infinity, -Infinity, -Infinity];
   for (let i = 0; i < positions.length; ++i) {
@@ -30,7 +30,7 @@ function bounds(positions) {
 }
 
 /**
- * @param {AsyncIterable<Uint8Array>} chunks
+ * @param {AsyncIterable<Uint8Array> | Uint8Array[]} chunks
  * @param {(fraction: number) => void} [onProgress]
  * @returns {Promise<Mesh>}
  * @throws {Error} if the file is truncated, has trailing bytes, or is empty

@@ -306,6 +306,12 @@ export class Viewer {
     this.#draw();
   }
 
+  /** The picture as it is now, as the address of a PNG. */
+  picture() {
+    this.#renderer.render(this.#scene, this.#camera);
+    return this.#canvas.toDataURL();
+  }
+
   #resize() {
     if (fitToCanvas(this.#renderer, this.#camera, this.#canvas)) {
       this.#draw();

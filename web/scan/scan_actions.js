@@ -90,6 +90,17 @@ export async function removeChosen() {
   });
 }
 
+/** Adds a tag to all selected scans. @param {string} tag */
+export const tagChosen = (tag) => act('failure.tag', async () => {
+  const chosen = state.scans.filter(({id, tags}) => state.library.chosen?.includes(id) && !tags.includes(tag));
+  /** @type {states.Scan[]} */
+  const tagged = [];
+  for (const {id, tags} of chosen) {
+    tagged.push(await api.label(id, {tags: [...tags, tag]}));
+  }
+  return (now) => tagged.reduce(states.withScan, now);
+}, tag);
+
 /** @param {string[]} ids */
 export const restore = (ids) => act(ids.length > 1 ? 'failure.restore-all' : 'failure.restore', async () => {
   for (const id of ids) {

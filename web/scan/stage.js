@@ -227,6 +227,12 @@ export function renderStage(stage) {
   markPlaces();
 }
 
+/** Paints the corners of a model if it is in view. @param {string} url @param {Uint8Array | null} colours  null: clay */
+export const paintModel = (url, colours) => current === url && viewer?.paint(colours);
+
+/** The picture of the model, as the address of a PNG; empty: there is none. */
+export const modelPicture = () => viewer?.picture() ?? '';
+
 /** Attaches the handlers of the picture's buttons. */
 export function prepareStage() {
   prepareTools(() => viewer);

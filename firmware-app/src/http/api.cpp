@@ -142,6 +142,8 @@ std::span<const Route> scan_routes() {
   static const std::array all{
       Route{"GET", "/api/v1/scans", list_scans},
       Route{"POST", "/api/v1/scans", start_scan, WaitsFor::start},
+      Route{"GET", "/api/v1/scans.csv", send_table},
+      Route{"GET", "/api/v1/scans.zip", send_collection},
       Route{"POST", "/api/v1/scans/estimate", send_estimate},
       Route{"GET", "/api/v1/scans/{id}", send_scan},
       Route{"PATCH", "/api/v1/scans/{id}", label_scan},

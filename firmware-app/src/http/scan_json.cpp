@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,15 @@ namespace {
 using nlohmann::json;
 
 std::string path_to(const std::string& id) { return "/api/v1/scans/" + id; }
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream all(text);
+  for (std::string line; std::getline(all, line);) {
+    lines.push_back(line);
+  }
+  return lines;
+}
 
 json with_url(const Model& model, std::string url) {
   json object = to_json(model);
@@ -34,28 +44,32 @@ json to_json(const ClusterJob& job) { return {{"id", job.id}, {"detail", job.det
 
 json to_json(const Job& job) {
   const Model* const model = chosen_model(job);
-  return {{"id", job.id},
-          {"name", job.label.name},
-          {"notes", job.label.notes},
-          {"state", to_string(job.state)},
-          {"phase", to_string(job.phase)},
-          {"created", job.times.created},
-          {"snapshots_done", job.snapshots_done},
-          {"snapshots_total", job.settings.snapshots},
-          {"seconds_elapsed", to_thousandths(job.times.elapsed.count())},
-          {"seconds_left", to_json(job.times.left)},
-          {"seconds_until_pause", to_json(job.times.until_pause)},
-          {"late_pulses", job.times.late_pulses},
-          {"slips", job.times.slips},
-          {"seconds_settling", to_thousandths(job.times.settling.count())},
-          {"settings", to_json(job.settings)},
-          {"error", job.failure ? to_json(*job.failure) : json()},
-          {"calibration", to_json(job.calibration)},
-          {"model", model != nullptr ? with_url(*model, path_to(job.id) + "/Scan.stl") : json()},
-          {"build", find_build(job, job.builds.chosen) != nullptr ? job.builds.chosen : 0},
-          {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()},
-          {"has_colours", job.builds.have_colours},
-          {"has_views", job.builds.have_views}};
+  json object = {
+      {"id", job.id},
+      {"state", to_string(job.state)},
+      {"phase", to_string(job.phase)},
+      {"created", job.times.created},
+      {"snapshots_done", job.snapshots_done},
+      {"snapshots_total", job.settings.snapshots},
+      {"seconds_elapsed", to_thousandths(job.times.elapsed.count())},
+      {"seconds_left", to_json(job.times.left)},
+      {"seconds_until_pause", to_json(job.times.until_pause)},
+      {"late_pulses", job.times.late_pulses},
+      {"slips", job.times.slips},
+      {"seconds_settling", to_thousandths(job.times.settling.count())},
+      {"settings", to_json(job.settings)},
+      {"error", job.failure ? to_json(*job.failure) : json()},
+      {"calibration", to_json(job.calibration)},
+      {"model", model != nullptr ? with_url(*model, path_to(job.id) + "/Scan.stl") : json()},
+      {"build", find_build(job, job.builds.chosen) != nullptr ? job.builds.chosen : 0},
+      {"pose_of", job.pose_of ? to_json(*job.pose_of) : json()},
+      {"has_colours", job.builds.have_colours},
+      {"has_views", job.builds.have_views}};
+  for (const LabelText& text : label_texts()) {
+    const std::string& written = job.label.*text.text;
+    object[std::string(text.key)] = text.is_list ? json(lines_of(written)) : json(written);
+  }
+  return object;
 }
 
 json to_json(const Job& job, const Build& build) {

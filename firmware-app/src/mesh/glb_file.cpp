@@ -4,6 +4,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "mesh/mesh_formats.hpp"
@@ -85,15 +86,32 @@ void add_colours(json& all, std::size_t count) {
   all["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] = json::array({1, 1, 1, 1});
 }
 
+/// The asset of a glTF document: who made the model, and what may be done with it.
+json asset(const MeshModel& model) {
+  json all{{"version", "2.0"}, {"generator", "Octurn"}};
+  for (const auto& [key, text] :
+       {std::pair("inventory_number", &model.inventory_number), std::pair("author", &model.author),
+        std::pair("licence", &model.licence)}) {
+    if (!text->empty()) {
+      all["extras"][key] = *text;
+    }
+  }
+  const bool has_both = !model.author.empty() && !model.licence.empty();
+  const std::string copyright = model.author + (has_both ? ", " : "") + model.licence;
+  if (!copyright.empty()) {
+    all["copyright"] = copyright;
+  }
+  return all;
+}
+
 /// The glTF document, as text. Its buffer holds the indices, the positions, and the colours if
 /// there are any.
-/// @param colours  number of vertex colours; 0: none
-std::string description(std::uint64_t index_bytes, std::span<const Vertex> vertices,
-                        std::size_t colours, const std::string& name) {
+std::string description(const MeshModel& model, std::uint64_t index_bytes,
+                        std::span<const Vertex> vertices) {
   const auto [min, max] = make_bounds(vertices);
   const double half = std::numbers::sqrt2 / 2;  // a quarter of a turn about X: Z up becomes Y up
   const json node{{"mesh", 0},
-                  {"name", name},
+                  {"name", model.name},
                   {"rotation", json::array({-half, 0, 0, half})},
                   {"scale", json::array({metres_in_mm, metres_in_mm, metres_in_mm})}};
   const json primitive{{"attributes", {{"POSITION", 1}}}, {"indices", 0}, {"material", 0}};
@@ -118,7 +136,7 @@ std::string description(std::uint64_t index_bytes, std::span<const Vertex> verti
                            {"byteOffset", index_bytes},
                            {"byteLength", vertices.size_bytes()},
                            {"target", array_buffer}};
-  json all{{"asset", {{"version", "2.0"}, {"generator", "Octurn"}}},
+  json all{{"asset", asset(model)},
            {"scene", 0},
            {"scenes", json::array({json{{"nodes", json::array({0})}}})},
            {"nodes", json::array({node})},
@@ -127,8 +145,8 @@ std::string description(std::uint64_t index_bytes, std::span<const Vertex> verti
            {"accessors", json::array({indices, positions})},
            {"bufferViews", json::array({index_view, position_view})},
            {"buffers", json::array({json{{"byteLength", index_bytes + vertices.size_bytes()}}})}};
-  if (colours > 0) {
-    add_colours(all, colours);
+  if (!model.colours.empty()) {
+    add_colours(all, model.colours.size());
   }
   std::string text = all.dump(-1, ' ', false, json::error_handler_t::replace);
   text.append((4 - text.size() % 4) % 4, ' ');  // a chunk ends at a multiple of four bytes
@@ -137,14 +155,14 @@ std::string description(std::uint64_t index_bytes, std::span<const Vertex> verti
 
 }  // namespace
 
-void write_glb(const FacetFile& facets, const std::string& name,
-               const std::filesystem::path& target, std::span<const Rgb> colours) {
-  const VertexTable table(facets);
+void write_glb(const MeshModel& model, const std::filesystem::path& target) {
+  const std::span<const Rgb> colours = model.colours;
+  const VertexTable table(model.facets);
   expect_colours_of(table, colours);
   const std::span<const Vertex> vertices = table.vertices();
   const std::vector<LinearColour> linear_colours = linear(colours);
-  const std::uint64_t index_bytes = facets.count() * 3 * sizeof(std::uint32_t);
-  const std::string text = description(index_bytes, vertices, colours.size(), name);
+  const std::uint64_t index_bytes = model.facets.count() * 3 * sizeof(std::uint32_t);
+  const std::string text = description(model, index_bytes, vertices);
   const std::uint64_t buffer_bytes =
       index_bytes + vertices.size_bytes() + std::span(linear_colours).size_bytes();
   const auto length = static_cast<std::uint32_t>(heads + text.size() + buffer_bytes);
@@ -156,7 +174,7 @@ void write_glb(const FacetFile& facets, const std::string& name,
   const std::array chunk{static_cast<std::uint32_t>(buffer_bytes), binary_chunk};
   file.write(std::as_bytes(std::span(chunk)));
   std::vector<std::uint32_t> indices;
-  facets.read([&](std::span<const Facet> block) {
+  model.facets.read([&](std::span<const Facet> block) {
     indices.clear();
     for (const Facet& facet : block) {
       const auto corners = facet.corners;  // a copy: a facet's members are not aligned

@@ -2,27 +2,19 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
+
+#include "one_line.hpp"
 
 namespace octurn {
 namespace {
 
 constexpr std::array formats{
-    MeshFormat{".3mf", "model/3mf", true,
-               [](const MeshModel& model, const std::filesystem::path& target) {
-                 write_3mf(model.facets, model.name, model.thumbnail, target, model.colours);
-               }},
-    MeshFormat{".ply", "application/octet-stream", false,  // no media type is registered
-               [](const MeshModel& model, const std::filesystem::path& target) {
-                 write_ply(model.facets, target, model.colours);
-               }},
-    MeshFormat{".glb", "model/gltf-binary", false,
-               [](const MeshModel& model, const std::filesystem::path& target) {
-                 write_glb(model.facets, model.name, target, model.colours);
-               }},
-    MeshFormat{".obj", "model/obj", false,
-               [](const MeshModel& model, const std::filesystem::path& target) {
-                 write_obj(model.facets, model.name, target, model.colours);
-               }},
+    MeshFormat{".3mf", "model/3mf", true, write_3mf},
+    MeshFormat{".ply", "application/octet-stream", false,
+               write_ply},  // no media type is registered
+    MeshFormat{".glb", "model/gltf-binary", false, write_glb},
+    MeshFormat{".obj", "model/obj", false, write_obj},
 };
 
 }  // namespace
@@ -41,6 +33,18 @@ std::string mesh_file_names(const std::string& stem) {
     names += format.extension;
   }
   return names;
+}
+
+std::vector<std::string> comment_lines(const MeshModel& model) {
+  std::vector<std::string> lines;
+  for (const auto& [what, text] :
+       {std::pair("name ", &model.name), std::pair("inventory number ", &model.inventory_number),
+        std::pair("author ", &model.author), std::pair("licence ", &model.licence)}) {
+    if (!text->empty()) {
+      lines.push_back(what + to_one_line(*text));
+    }
+  }
+  return lines;
 }
 
 }  // namespace octurn

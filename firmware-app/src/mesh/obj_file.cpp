@@ -11,6 +11,7 @@
 #include "mesh/model_colours.hpp"
 #include "mesh/vertex_table.hpp"
 #include "octurn/file.hpp"
+#include "one_line.hpp"
 
 namespace octurn {
 namespace {
@@ -52,25 +53,25 @@ class TextBlock {
 };
 
 /// The name without line feeds, which would end its line.
-std::string one_line(std::string name) {
-  std::ranges::replace_if(
-      name, [](char c) { return c == '\n' || c == '\r'; }, ' ');
-  return name;
-}
-
 float to_share(std::uint8_t channel) {
   return static_cast<float>(std::round(channel / full * 10'000) / 10'000);
 }
 
 }  // namespace
 
-void write_obj(const FacetFile& facets, const std::string& name,
-               const std::filesystem::path& target, std::span<const Rgb> colours) {
-  const VertexTable table(facets);
+void write_obj(const MeshModel& model, const std::filesystem::path& target) {
+  const std::span<const Rgb> colours = model.colours;
+  const VertexTable table(model.facets);
   expect_colours_of(table, colours);
   AtomicFile file(target);
   TextBlock text(file);
-  text.add("# millimetres, Z up\no " + one_line(name));
+  text.add("# millimetres, Z up");
+  text.end_line();
+  for (const std::string& line : comment_lines(model)) {
+    text.add("# " + line);
+    text.end_line();
+  }
+  text.add("o " + to_one_line(model.name));
   text.end_line();
   for (std::size_t i = 0; i < table.vertices().size(); ++i) {
     text.add("v");
@@ -84,7 +85,7 @@ void write_obj(const FacetFile& facets, const std::string& name,
     }
     text.end_line();
   }
-  facets.read([&](std::span<const Facet> block) {
+  model.facets.read([&](std::span<const Facet> block) {
     for (const Facet& facet : block) {
       const auto corners = facet.corners;  // a copy: a facet's members are not aligned
       text.add("f");

@@ -21,11 +21,17 @@ struct Face {
 };
 #pragma pack(pop)
 
-/// @param colour  property lines of a vertex's colour; empty: none
-std::string header(std::size_t vertices, const std::string& colour, std::uint64_t faces) {
-  return "ply\nformat binary_little_endian 1.0\ncomment millimetres, Z up\nelement vertex " +
+std::string header(const MeshModel& model, std::size_t vertices) {
+  std::string comments = "comment millimetres, Z up\n";
+  for (const std::string& line : comment_lines(model)) {
+    comments += "comment " + line + '\n';
+  }
+  const std::string colour = model.colours.empty() ? ""
+                                                   : "\nproperty uchar red\nproperty uchar green"
+                                                     "\nproperty uchar blue";
+  return "ply\nformat binary_little_endian 1.0\n" + comments + "element vertex " +
          std::to_string(vertices) + "\nproperty float x\nproperty float y\nproperty float z" +
-         colour + "\nelement face " + std::to_string(faces) +
+         colour + "\nelement face " + std::to_string(model.facets.count()) +
          "\nproperty list uchar uint vertex_indices\nproperty uchar filled\nend_header\n";
 }
 
@@ -41,15 +47,12 @@ std::vector<ColouredVertex> coloured(std::span<const Vertex> vertices,
 
 }  // namespace
 
-void write_ply(const FacetFile& facets, const std::filesystem::path& target,
-               std::span<const Rgb> colours) {
-  const VertexTable table(facets);
+void write_ply(const MeshModel& model, const std::filesystem::path& target) {
+  const std::span<const Rgb> colours = model.colours;
+  const VertexTable table(model.facets);
   expect_colours_of(table, colours);
   AtomicFile file(target);
-  const std::string colour = colours.empty() ? ""
-                                             : "\nproperty uchar red\nproperty uchar green"
-                                               "\nproperty uchar blue";
-  const std::string head = header(table.vertices().size(), colour, facets.count());
+  const std::string head = header(model, table.vertices().size());
   file.write(std::as_bytes(std::span(head)));
   if (colours.empty()) {
     file.write(std::as_bytes(table.vertices()));
@@ -58,7 +61,7 @@ void write_ply(const FacetFile& facets, const std::filesystem::path& target,
     file.write(std::as_bytes(std::span(vertices)));
   }
   std::vector<Face> faces;
-  facets.read([&](std::span<const Facet> block) {
+  model.facets.read([&](std::span<const Facet> block) {
     faces.clear();
     for (const Facet& facet : block) {
       const auto corners = facet.corners;  // a copy: a facet's members are not aligned

@@ -3,10 +3,12 @@
 #include <array>
 #include <charconv>
 #include <string>
+#include <utility>
 
 #include "mesh/mesh_formats.hpp"
 #include "mesh/model_colours.hpp"
 #include "mesh/vertex_table.hpp"
+#include "one_line.hpp"
 #include "zip_file.hpp"
 
 namespace octurn {
@@ -88,6 +90,7 @@ class XmlStream {
   std::string text_ = {};
 };
 
+constexpr std::string_view own_namespace = R"( xmlns:octurn="urn:x-octurn")";
 constexpr std::string_view materials =
     R"( xmlns:m="http://schemas.microsoft.com/3dmanufacturing/material/2015/02")";
 
@@ -125,18 +128,32 @@ void write_triangles(XmlStream& xml, const FacetFile& facets, const VertexTable&
   });
 }
 
-void write_model(XmlStream& xml, const FacetFile& facets, const std::string& name,
-                 std::span<const Rgb> colours) {
-  const VertexTable table(facets);
+/// Names without a namespace are those of the core specification, section 3.4.1, which has none for
+/// an inventory number.
+void write_metadata(XmlStream& xml, const MeshModel& model) {
+  for (const auto& [name, text] :
+       {std::pair("Title", &model.name), std::pair("Designer", &model.author),
+        std::pair("LicenseTerms", &model.licence),
+        std::pair("octurn:InventoryNumber", &model.inventory_number)}) {
+    if (!text->empty()) {
+      xml << "<metadata name=\"" << name << "\">" << escaped(to_one_line(*text)) << "</metadata>";
+    }
+  }
+}
+
+void write_model(XmlStream& xml, const MeshModel& model) {
+  const std::span<const Rgb> colours = model.colours;
+  const VertexTable table(model.facets);
   expect_colours_of(table, colours);
   xml << R"(<?xml version="1.0" encoding="UTF-8"?>
 <model unit="millimeter" xml:lang="en" xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02")"
-      << (colours.empty() ? "" : materials) << R"(><metadata name="Title">)" << escaped(name)
-      << R"(</metadata><metadata name="Application">Octurn</metadata><resources>)";
+      << (colours.empty() ? "" : materials) << own_namespace << ">";
+  write_metadata(xml, model);
+  xml << R"(<metadata name="Application">Octurn</metadata><resources>)";
   if (!colours.empty()) {
     write_colours(xml, colours);
   }
-  xml << R"(<object id="1" type="model" name=")" << escaped(name)
+  xml << R"(<object id="1" type="model" name=")" << escaped(model.name)
       << (colours.empty() ? R"("><mesh><vertices>)" : R"(" pid="2" pindex="0"><mesh><vertices>)");
   for (const Vertex& vertex : table.vertices()) {
     (xml << "<vertex x=\"").number(vertex[0]);
@@ -144,7 +161,7 @@ void write_model(XmlStream& xml, const FacetFile& facets, const std::string& nam
     (xml << "\" z=\"").number(vertex[2]) << "\"/>";
   }
   xml << "</vertices><triangles>";
-  write_triangles(xml, facets, table, colours);
+  write_triangles(xml, model.facets, table, colours);
   xml << R"(</triangles></mesh></object></resources><build><item objectid="1"/></build></model>)"
       << "\n";
   xml.flush();
@@ -152,8 +169,8 @@ void write_model(XmlStream& xml, const FacetFile& facets, const std::string& nam
 
 }  // namespace
 
-void write_3mf(const FacetFile& facets, const std::string& name, const std::string& thumbnail,
-               const std::filesystem::path& target, std::span<const Rgb> colours) {
+void write_3mf(const MeshModel& model, const std::filesystem::path& target) {
+  const std::string& thumbnail = model.thumbnail;
   ZipWriter zip(target);
   zip.begin("[Content_Types].xml", ZipMethod::deflated);
   zip.write(content_types);
@@ -166,7 +183,7 @@ void write_3mf(const FacetFile& facets, const std::string& name, const std::stri
   }
   zip.begin("3D/3dmodel.model", ZipMethod::deflated);
   XmlStream xml(zip);
-  write_model(xml, facets, name, colours);
+  write_model(xml, model);
   zip.commit();
 }
 

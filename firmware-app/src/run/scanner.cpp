@@ -119,12 +119,12 @@ void Scanner::request_stop() {
   ending_.request_stop();
 }
 
-std::optional<Job> Scanner::start(const ScanSettings& settings) {
+std::optional<Job> Scanner::start(const ScanSettings& settings, const LabelChange& label) {
   const std::lock_guard lock(scans_);
   if (slot_.has_scan()) {
     return std::nullopt;
   }
-  const Job job = store_.create(settings);
+  const Job job = store_.create(settings, {}, label);
   return hand_over(job, ScanCommand{job});
 }
 

@@ -57,7 +57,7 @@ class Scanner {
 
   /// Starts a scan. @return nullopt if a scan or a measurement runs
   /// @throws Error "disk-full", "data-failed"
-  std::optional<Job> start(const ScanSettings& settings);
+  std::optional<Job> start(const ScanSettings& settings, const LabelChange& label = {});
 
   /// Starts a scan of the object of a finished scan in another pose, after a person turned it over.
   /// Both are merged, and the model of all poses becomes that of the finished scan.

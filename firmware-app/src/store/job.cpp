@@ -5,6 +5,8 @@
 #include <cstdlib>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <set>
+#include <sstream>
 #include <utility>
 
 #include "octurn/error.hpp"
@@ -168,11 +170,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* name_file = "name.txt";
-constexpr const char* notes_file = "notes.txt";
 constexpr std::size_t max_bytes = 16384;
-constexpr std::ptrdiff_t max_name = 100;    // characters
+constexpr std::ptrdiff_t max_line = 100;    // characters
 constexpr std::ptrdiff_t max_notes = 2000;  // characters
+constexpr std::ptrdiff_t max_tag = 40;      // characters
+constexpr std::ptrdiff_t max_tags = 20;
 
 /// Counts code points of UTF-8 text: all bytes but continuation bytes, which begin with bits 10.
 std::ptrdiff_t count_characters(std::string_view text) {
@@ -188,34 +190,75 @@ std::string read_text(const fs::path& file) {
   }
 }
 
-}  // namespace
-
-bool is_name(const std::string& text) {
-  return count_characters(text) <= max_name && is_one_line(text);
-}
-
+/// Whether text has no control characters except line feeds and tabs.
 bool is_notes(const std::string& text) {
   std::string line = text;
   std::erase_if(line, [](char c) { return c == '\n' || c == '\t'; });
   return count_characters(text) <= max_notes && is_one_line(line);
 }
 
+/// Whether each line is a tag, and no tag comes twice.
+bool are_tags(const std::string& text) {
+  std::set<std::string> tags;
+  std::ptrdiff_t count = 0;
+  std::istringstream lines(text);
+  for (std::string tag; std::getline(lines, tag); ++count) {
+    const std::ptrdiff_t size = count_characters(tag);
+    if (size == 0 || size > max_tag || !is_one_line(tag) || tag.find(',') != tag.npos ||
+        !tags.insert(tag).second) {
+      return false;
+    }
+  }
+  return count <= max_tags;
+}
+
+}  // namespace
+
+bool is_name(const std::string& text) {
+  return count_characters(text) <= max_line && is_one_line(text);
+}
+
+std::span<const LabelText> label_texts() {
+  constexpr std::string_view line = "text of at most 100 characters on one line";
+  static constexpr std::array all{
+      LabelText{"name", "name.txt", line, is_name, &ScanLabel::name, &LabelChange::name, false,
+                true},
+      LabelText{"notes", "notes.txt", "text of at most 2000 characters", is_notes,
+                &ScanLabel::notes, &LabelChange::notes},
+      LabelText{"tags", "tags.txt",
+                "a list of at most 20 different texts of 1 to 40 characters on one line without "
+                "commas",
+                are_tags, &ScanLabel::tags, &LabelChange::tags, true},
+      LabelText{"inventory_number", "inventory-number.txt", line, is_name,
+                &ScanLabel::inventory_number, &LabelChange::inventory_number, false, true},
+      LabelText{"author", "author.txt", line, is_name, &ScanLabel::author, &LabelChange::author,
+                false, true},
+      LabelText{"licence", "licence.txt", line, is_name, &ScanLabel::licence, &LabelChange::licence,
+                false, true},
+  };
+  return all;
+}
+
 ScanLabel changed(ScanLabel label, const LabelChange& change) {
-  label.name = change.name.value_or(label.name);
-  label.notes = change.notes.value_or(label.notes);
+  for (const LabelText& text : label_texts()) {
+    label.*text.text = (change.*text.change).value_or(label.*text.text);
+  }
   return label;
 }
 
 ScanLabel read_label(const fs::path& folder) {
-  return {.name = read_text(folder / name_file), .notes = read_text(folder / notes_file)};
+  ScanLabel label;
+  for (const LabelText& text : label_texts()) {
+    label.*text.text = read_text(folder / text.file);
+  }
+  return label;
 }
 
 void write_label(const fs::path& folder, const LabelChange& change) {
-  if (change.name) {
-    write_file(folder / name_file, *change.name);
-  }
-  if (change.notes) {
-    write_file(folder / notes_file, *change.notes);
+  for (const LabelText& text : label_texts()) {
+    if (change.*text.change) {
+      write_file(folder / text.file, *(change.*text.change));
+    }
   }
 }
 

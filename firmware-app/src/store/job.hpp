@@ -8,6 +8,7 @@
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <ratio>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -156,10 +157,14 @@ struct JobBuilds {
   bool have_views = true;       ///< models can tell how many depth images saw a place: not by laser
 };
 
-/// A person's name and notes for a scan; empty if there are none.
+/// What a person has written about a scan; each text is empty if there is none.
 struct ScanLabel {
   std::string name = {};
   std::string notes = {};
+  std::string tags = {};  ///< one a line
+  std::string inventory_number = {};
+  std::string author = {};   ///< of the model
+  std::string licence = {};  ///< of the model
 };
 
 /// One scan: its settings, state and results.
@@ -195,24 +200,37 @@ Job to_interrupted(Job job, int snapshots, const Failure& reason = interruption(
 
 // A scan's label has its own files, because a running scan writes `job.json`.
 
-/// A change of a scan's label.
+/// A change of a scan's label; nullopt: unchanged.
 struct LabelChange {
-  std::optional<std::string> name = {};  ///< one line of at most 100 characters; nullopt: unchanged
-  std::optional<std::string> notes = {};  ///< at most 2000 characters; nullopt: unchanged
+  std::optional<std::string> name = {};
+  std::optional<std::string> notes = {};
+  std::optional<std::string> tags = {};
+  std::optional<std::string> inventory_number = {};
+  std::optional<std::string> author = {};
+  std::optional<std::string> licence = {};
 };
 
 /// Whether text is a valid name: one line of at most 100 characters.
 bool is_name(const std::string& text);
 
-/// Whether text is valid as notes: at most 2000 characters, and no control characters except line
-/// feeds and tabs.
-bool is_notes(const std::string& text);
+/// A text of a label: a row of the table from which the scan's folder, its archive and the
+/// interface take what they have.
+struct LabelText {
+  std::string_view key;   ///< in the interface
+  std::string_view file;  ///< in the scan's folder
+  std::string_view rule;  ///< completes "... must be"
+  bool (*is_valid)(const std::string& text);
+  std::string ScanLabel::*text;
+  std::optional<std::string> LabelChange::*change;
+  bool is_list = false;      ///< whether each line is a text of its own
+  bool is_in_model = false;  ///< whether a model's files contain it
+};
+std::span<const LabelText> label_texts();
 
 /// Returns the label after the change.
 ScanLabel changed(ScanLabel label, const LabelChange& change);
 
-/// Reads a scan's `name.txt` and `notes.txt`. One that is missing, unreadable or too large is
-/// empty.
+/// Reads the texts in a scan's folder. One that is missing, unreadable or too large is empty.
 ScanLabel read_label(const std::filesystem::path& folder);
 
 /// Writes the changed files, each atomically.

@@ -18,6 +18,7 @@
 #include "octurn/sensor_map.hpp"
 #include "settings/scan_settings.hpp"
 #include "store/data_folder.hpp"
+#include "store/job.hpp"
 #include "zip_file.hpp"
 
 namespace octurn {
@@ -25,8 +26,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 5> single_files{"scan.json", "job.json", "name.txt",
-                                                       "notes.txt", "sensor-map.png"};
+constexpr std::array<std::string_view, 3> single_files{"scan.json", "job.json", "sensor-map.png"};
 constexpr std::string_view snapshots_prefix = "snapshots/";
 constexpr std::size_t max_archived_file_bytes = std::size_t{32} << 20U;
 
@@ -49,6 +49,9 @@ bool is_plain(char c) {
 /// Lists the files of a scan, sorted, so that its archive is reproducible.
 std::vector<std::string> list_files(const fs::path& scan) {
   std::vector<std::string> files(single_files.begin(), single_files.end());
+  for (const LabelText& text : label_texts()) {
+    files.emplace_back(text.file);
+  }
   for (const std::string& name : names_in(scan / snapshots_prefix)) {
     files.push_back(std::string(snapshots_prefix) + name);
   }
@@ -173,7 +176,8 @@ ToTarget to_target(const fs::path& archive) {
 }  // namespace
 
 bool is_scan_file(std::string_view name) {
-  if (std::ranges::find(single_files, name) != single_files.end()) {
+  if (std::ranges::find(single_files, name) != single_files.end() ||
+      std::ranges::find(label_texts(), name, &LabelText::file) != label_texts().end()) {
     return true;
   }
   constexpr std::string_view ending = ".png";

@@ -10,8 +10,8 @@
 
 namespace octurn {
 
-/// Whether a scan's archive may contain a file of that name: `scan.json`, `job.json`, `name.txt`,
-/// `notes.txt`, `sensor-map.png`, and PNGs in `snapshots/`.
+/// Whether a scan's archive may contain a file of that name: `scan.json`, `job.json`, the texts of
+/// its label, `sensor-map.png`, and PNGs in `snapshots/`.
 bool is_scan_file(std::string_view name);
 
 /// Writes the captured data of a scan, without its models, to a zip archive, from which another

@@ -140,11 +140,10 @@ constexpr std::size_t max_created = 40;  // characters; "2026-11-21T08:15:00Z" h
 ScanLabel read_adopted_label(const fs::path& folder) {
   const ScanLabel found = read_label(folder);
   LabelChange change;
-  if (!is_name(found.name)) {
-    change.name = "";
-  }
-  if (!is_notes(found.notes)) {
-    change.notes = "";
+  for (const LabelText& text : label_texts()) {
+    if (!text.is_valid(found.*text.text)) {
+      change.*text.change = "";
+    }
   }
   write_label(folder, change);
   return changed(found, change);
@@ -232,18 +231,21 @@ ScanStore::ScanStore(fs::path data, WallClock clock)
   finish_discards();
 }
 
-Job ScanStore::create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of) {
+Job ScanStore::create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of,
+                      const LabelChange& label) {
   make_room(max_scan_bytes(settings),
             "a scan of " + std::to_string(settings.snapshots) + " snapshots");
   const std::lock_guard writing(writing_);
   const ScanTime now = next_time();
   Job job{.id = to_scan_id(now),
+          .label = changed({}, label),
           .times = {.created = utc_text(now, rfc3339)},
           .settings = settings,
           .pose_of = pose_of};
 
   const fs::path beginning = scans_ / (std::string(unfinished) + job.id);
   make_folder(beginning);
+  write_label(beginning, label);
   enter(beginning, job);
   return job;
 }

@@ -20,7 +20,7 @@
 namespace octurn {
 
 /// The scans on the disk: `DATA/scans/<id>/` with a scan folder, `Scan.stl`, `job.json` (settings,
-/// state and results), `name.txt` and `notes.txt` (a person's label), and `builds/<number>/` with
+/// state and results), the texts of its label such as `name.txt`, and `builds/<number>/` with
 /// models that were built later. Also `DATA/platform.json` with the platform's angle.
 ///
 /// The files are read once, by the constructor, and then held in memory: listing scans needs no
@@ -36,7 +36,8 @@ class ScanStore {
   /// clock was set back.
   /// @throws Error "disk-full" if a scan of that many snapshots may not fit
   /// @param pose_of  the link of a scan of another pose
-  Job create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of = {});
+  Job create(const ScanSettings& settings, const std::optional<PoseOf>& pose_of = {},
+             const LabelChange& label = {});
 
   /// Writes `job.json` with the progress or the outcome of a scan that runs. Its label and its
   /// builds stay as stored: they may have changed since `job` was copied. If writing fails, the

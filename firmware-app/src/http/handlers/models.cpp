@@ -241,7 +241,12 @@ fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model, const
                     std::optional<Colours> paint = {}) {
   fs::path file = model.parent_path() / ("Scan" + suffix_of(paint));
   file += format.extension;
-  auto source = std::max(written(model), written(app.store.folder(job.id) / "name.txt"));
+  fs::file_time_type source = written(model);
+  for (const LabelText& text : label_texts()) {
+    if (text.is_in_model) {
+      source = std::max(source, written(app.store.folder(job.id) / text.file));
+    }
+  }
   source = paint ? std::max(source, written(colours_file(model, *paint))) : source;
   const fs::path thumbnail = format.has_thumbnail ? fresh_thumbnail(model) : fs::path();
   keep_fresh(file, source, [&] {
@@ -250,6 +255,9 @@ fs::path fresh_mesh(const App& app, const Job& job, const fs::path& model, const
     const std::vector<Rgb> colours = paint ? read_colours(model, *paint) : std::vector<Rgb>();
     format.write({.facets = facets,
                   .name = download_name(job, ""),
+                  .inventory_number = job.label.inventory_number,
+                  .author = job.label.author,
+                  .licence = job.label.licence,
                   .thumbnail = png.value_or(""),
                   .colours = colours},
                  file);

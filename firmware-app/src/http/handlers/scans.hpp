@@ -12,13 +12,15 @@ namespace octurn {
 /// Lists all scans, newest first.
 Response list_scans(App& app);
 
-/// Starts a scan with the settings of the body. Answers 202 with Location.
-/// @throws Error "bad-json", "bad-settings", "busy", "sensor-...", "turntable-...", "disk-full"
+/// Starts a scan with the settings and the label of the body. Answers 202 with Location.
+/// @throws Error "bad-json", "bad-name", "bad-settings", "busy", "sensor-...", "turntable-...",
+///               "disk-full"
 Response start_scan(App& app, const Request& request);
 
 Response send_scan(App& app, std::string_view id);
 
-/// Sets the name and the notes of a scan from the body. @throws Error "bad-json", "bad-name"
+/// Sets texts of a scan's label, such as its name, from the body. @throws Error "bad-json",
+/// "bad-name"
 Response label_scan(App& app, const Request& request, std::string_view id);
 
 /// Moves a scan into the bin. @throws Error "busy"  if it runs
@@ -48,6 +50,16 @@ Response empty_bin(App& app);
 
 /// Restores a scan. @throws Error "no-such-scan"  if it is not in the bin
 Response restore_scan(App& app, std::string_view id);
+
+// Several scans: those of the parameter `ids`, or all.
+
+/// Sends a table of scans, as CSV. @throws Error "bad-settings", "no-such-scan"
+Response send_table(App& app, const Request& request);
+
+/// Sends the models of scans, with their table, as a zip file.
+/// @throws Error "bad-settings", "no-such-scan", "no-model", "too-large", "too-many", "disk-full",
+///               "memory-limit"
+Response send_collection(App& app, const Request& request);
 
 // Whole scans as zip files, to move them from one Octurn to another.
 

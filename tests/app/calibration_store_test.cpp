@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <stop_token>
 #include <string>
+#include <thread>
 
 #include "calibration/optics_files.hpp"
 #include "support/temporary_folder.hpp"
@@ -278,8 +280,8 @@ TEST(CalibrationStore, MovesThePlatformAsTheDepthsOfNewOptics) {
   const SensorOptics before{.depth_scale = 0.99, .depth_offset_per_m = 0.002};
   const OpticsRecord now{.optics = {.value = {.depth_scale = 1.012, .depth_offset_per_m = -0.008}},
                          .at = "2026-11-28T08:00:00Z"};
-  keep_optics(folder.path(), "A", now);
-  store.use_scale_of("A", before, now, {});
+  keep_optics(folder.path(), "A", {.optics = {.value = before}, .at = "2026-11-27T08:00:00Z"});
+  store.use_optics("A", now, {});
 
   const PoseRecord moved = store.records({}).front();
   const Eigen::Vector3d old_middle = record.platform_from_sensor.inverse().translation();
@@ -302,15 +304,36 @@ TEST(CalibrationStore, PutsABoardsScaleInPlaceOfTheSettingsLength) {
   const TemporaryFolder folder;
   CalibrationStore store(folder.path());
   const OpticsRecord now{.optics = {.value = {.depth_scale = 1.012}}, .at = "2026-11-28T08:00:00Z"};
-  store.use_scale_of("A", {}, now, {});
+  store.use_optics("B", now, {});
   EXPECT_TRUE(store.records({}).front().at.empty()) << "the drawing has no scale to replace";
 
   ScanSettings configured;
   configured.depth_scale = 1.02;
-  store.use_scale_of("A", {}, now, configured);
+  store.use_optics("A", now, configured);
   EXPECT_EQ(store.in_force(configured).depth_scale, 1);
   EXPECT_EQ(store.in_force(configured).platform_from_sensor.matrix(),
             nominal_platform_from_sensor().matrix());
+}
+
+// A sensor that opens drops poses without optics, on another thread than the one that writes them.
+TEST(CalibrationStore, DropsNoPoseWhoseOpticsAreBeingWritten) {
+  const TemporaryFolder folder;
+  CalibrationStore store(folder.path());
+  const std::jthread opening([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) {
+      store.drop_without_optics("A");
+    }
+  });
+  ScanSettings configured;
+  configured.depth_scale = 1.02;
+  for (int i = 0; i < 20; ++i) {
+    const std::string at = "turn " + std::to_string(i);
+    store.set(record_with_optics(0.1, at), {.at = at});
+    ASSERT_EQ(store.records({}).front().optics_at, at);
+    const std::string board = "board " + std::to_string(i);
+    store.use_optics("A", {.at = board}, configured);
+    ASSERT_EQ(store.records({}).front().optics_at, board);
+  }
 }
 
 }  // namespace

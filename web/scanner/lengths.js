@@ -1,9 +1,11 @@
 // The card with known lengths on the page Calibrate: lengths of a model beside those of its object, and how far the
 // model is off.
 
+import * as api from '../api/api.js';
 import {copyOf, element, part, setText, show} from '../base/dom.js';
 import {when} from '../base/format.js';
 import {text} from '../base/texts.js';
+import {readStl} from '../model/stl.js';
 import {gaugeOf} from './calibration.js';
 
 const maxLengths = 8;
@@ -41,11 +43,35 @@ export function clearLengths() {
   rows().forEach((row) => row.remove());
   addLength();
   showErrors();
+  setText(element('model-measured'), '');
+}
+
+/** Fills in the sizes of the newest model, if it is one of a block or a ball. */
+async function measureModel() {
+  const button = element('measure-model');
+  button.disabled = true;
+  setText(element('model-measured'), text('gauge.measuring'));
+  try {
+    const {gaugeSizes} = await import('../model/gauge.js');
+    const {newest} = await api.status();
+    const {kind, sizes} = gaugeSizes(await readStl(await api.model(`scans/${newest}/Scan.stl`, new AbortController().signal)));
+    if (sizes.length > 0) {
+      clearLengths();
+    }
+    sizes.forEach((size, index) => {
+      part(rows()[index] ?? addLength(), '.on-model').value = size.toFixed(2);
+    });
+    setText(element('model-measured'), text(`gauge.${kind}`));
+  } catch {
+    setText(element('model-measured'), text('gauge.no-model'));
+  }
+  button.disabled = false;
 }
 
 export function prepareLengths() {
   clearLengths();
   element('lengths').addEventListener('input', showErrors);
+  element('measure-model').addEventListener('click', measureModel);
   element('add-length').addEventListener('click', () => part(addLength(), '.on-model').focus());
   element('print-lengths').addEventListener('click', () => {
     setText(element('gauge-when'), when(new Date().toISOString()));

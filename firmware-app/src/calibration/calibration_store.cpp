@@ -131,6 +131,12 @@ void CalibrationStore::set(const PoseRecord& record) {
   add(record);
 }
 
+void CalibrationStore::set(const PoseRecord& pose, const OpticsRecord& optics) {
+  const std::lock_guard writing(writing_);  // nobody drops the pose before its optics are there
+  add(pose);
+  keep_optics(data_, pose.optics_of, optics);
+}
+
 /// `writing_` is held.
 void CalibrationStore::add(const PoseRecord& record) {
   std::vector<PoseRecord> all = records();
@@ -159,24 +165,35 @@ void CalibrationStore::change(const PoseChange& change, const ScanSettings& conf
   add(record);
 }
 
-void CalibrationStore::use_scale_of(std::string_view serial, const SensorOptics& before,
-                                    const OpticsRecord& now, const ScanSettings& configured) {
-  const std::lock_guard writing(writing_);
+/// The pose in force with new optics; nullopt if it stays as drawn. `writing_` is held.
+std::optional<PoseRecord> CalibrationStore::pose_with(std::string_view serial,
+                                                      const OpticsRecord& optics,
+                                                      const ScanSettings& configured) const {
   PoseRecord pose = records(configured).front();
   const bool is_drawing = pose.origin == PoseOrigin::drawing;
   if (is_drawing && pose.scale == 1) {
-    return;
+    return std::nullopt;
   }
   if (!is_drawing) {
-    pose.platform_from_sensor.translation() *= distance_factor(pose, before, now.optics.value);
+    const SensorOptics before = optics_in_force(data_, serial).value_or(SensorOptics{});
+    pose.platform_from_sensor.translation() *= distance_factor(pose, before, optics.optics.value);
   }
   pose.origin = PoseOrigin::page;
-  pose.at = now.at;
+  pose.at = optics.at;
   pose.figures.reset();
   pose.scale = 1;
   pose.optics_of = serial;
-  pose.optics_at = now.at;
-  add(pose);
+  pose.optics_at = optics.at;
+  return pose;
+}
+
+void CalibrationStore::use_optics(std::string_view serial, const OpticsRecord& optics,
+                                  const ScanSettings& configured) {
+  const std::lock_guard writing(writing_);  // as in `set`
+  if (const auto pose = pose_with(serial, optics, configured)) {
+    add(*pose);
+  }
+  keep_optics(data_, serial, optics);
 }
 
 void CalibrationStore::undo(std::string_view camera) {

@@ -49,17 +49,21 @@ class CalibrationStore {
   /// Puts a pose into force. @throws Error "disk-full", "write-failed"
   void set(const PoseRecord& record);
 
+  /// Puts a pose into force, and the optics of the sensor `pose.optics_of`, without which it does
+  /// not hold. After a power cut in between, `drop_without_optics` drops the pose.
+  /// @throws  as `set`
+  void set(const PoseRecord& pose, const OpticsRecord& optics);
+
   /// Applies a user's change. @param configured, camera  as above
   void change(const PoseChange& change, const ScanSettings& configured,
               std::string_view camera = {});
 
-  /// Has the scale of a depth sensor's new optics replace that of a known length. The distance of
-  /// the platform changes as its depths do, so that it stays at the same pixels. A pose of the
-  /// drawing stays as drawn.
-  /// @param before  the optics in force until now; default: those that the sensor reports
+  /// Puts a depth sensor's optics into force, whose scale replaces that of a known length. The
+  /// distance of the platform changes as its depths do, so that it stays at the same pixels. A pose
+  /// of the drawing stays as drawn.
   /// @throws  as `set`
-  void use_scale_of(std::string_view serial, const SensorOptics& before, const OpticsRecord& now,
-                    const ScanSettings& configured);
+  void use_optics(std::string_view serial, const OpticsRecord& optics,
+                  const ScanSettings& configured);
 
   /// Restores the pose before the one in force. @param camera  as above
   /// @throws Error "not-found"  if there is none; and as `set`
@@ -74,12 +78,15 @@ class CalibrationStore {
  private:
   std::vector<PoseRecord> records() const;
   PoseRecord to_record(const ScanSettings& configured) const;
+  std::optional<PoseRecord> pose_with(std::string_view serial, const OpticsRecord& optics,
+                                      const ScanSettings& configured) const;
   void add(const PoseRecord& record);
   void write(std::vector<PoseRecord> records);
 
   std::filesystem::path data_;
   SensorKind kind_;
-  std::mutex writing_;        // serialises changes of the records; locked before mutex_
+  // Serialises changes of the records and of the optics with which they hold; locked before mutex_.
+  std::mutex writing_;
   mutable std::mutex mutex_;  // guards records_; never held during disk access
   std::vector<PoseRecord> records_;
 };

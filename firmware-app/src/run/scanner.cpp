@@ -619,15 +619,13 @@ void Scanner::expect_solved_lens() const {
   }
 }
 
-/// Puts a depth sensor's optics into force. As in `Worker::keep_pose`, the pose is written first.
+/// Puts a depth sensor's optics into force.
 void Scanner::keep_board_optics(const std::string& serial, const SolvedOptics& optics,
                                 const ScanSettings& configured) {
   const OpticsRecord record{.optics = optics,
                             .origin = OpticsOrigin::board,
                             .at = utc_text(std::chrono::system_clock::now(), rfc3339)};
-  const SensorOptics before = optics_in_force(store_.data(), serial).value_or(SensorOptics{});
-  calibration_.use_scale_of(serial, before, record, configured);
-  keep_optics(store_.data(), serial, record);
+  calibration_.use_optics(serial, record, configured);
   remake_sensor_map(store_.data(), serial);
   if (sensor_serial() == serial) {
     board_.set_optics(read_optics(store_.data(), serial), find_map_summary(store_.data(), serial));

@@ -437,9 +437,8 @@ void Worker::keep_calibration(const ScanSolution& solution) {
 }
 
 /// Keeps an accepted pose and the optics with which it was solved: later scans of this sensor begin
-/// with both. The pose is written first. It does not hold without these optics: after a power cut
-/// in between it is dropped once the sensor is open. Nothing is kept of a scan that began with
-/// other optics than those in force, as one that was paused over a calibration.
+/// with both. Nothing is kept of a scan that began with other optics than those in force, as one
+/// that was paused over a calibration.
 void Worker::keep_pose(PoseRecord pose, const CalibrationReport& report, OpticsOrigin origin) {
   const std::string serial = capture_->sensor().serial;
   const bool are_new = report.optics_differ && !serial.empty();
@@ -453,19 +452,19 @@ void Worker::keep_pose(PoseRecord pose, const CalibrationReport& report, OpticsO
     pose.optics_of = serial;
     pose.optics_at = are_new ? pose.at : kept->at;
   }
-  ports_.calibration.set(pose);
   if (!are_new) {
+    ports_.calibration.set(pose);
     return;
   }
   OpticsRecord record{.optics = *report.optics, .origin = origin, .at = pose.at};
   record.optics.value.depth_scale = kept ? kept->optics.value.depth_scale : 1;
+  introduced_.reset();  // which drops the pose if its optics cannot be written
+  ports_.calibration.set(pose, record);
   try {
-    keep_optics(ports_.store.data(), serial, record);
     remake_sensor_map(ports_.store.data(), serial);
   } catch (...) {
     log::warning("calibration", current_failure().detail);
   }
-  introduced_.reset();
   introduce_sensor();
 }
 

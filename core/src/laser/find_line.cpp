@@ -7,6 +7,8 @@
 #include <span>
 #include <utility>
 
+#include "octurn/light_channel.hpp"
+
 namespace octurn {
 namespace {
 
@@ -387,7 +389,58 @@ std::vector<LineSample> without_wide(const std::vector<Candidate>& candidates) {
   return samples;
 }
 
+constexpr int brighter = 2;           // than luminance, from which another channel is taken
+constexpr int rows_per_lit_row = 30;  // at most, of a picture that shows a line
+constexpr std::size_t row_step = 4;   // of the rows that are compared
+
+std::uint8_t level_in(Channel channel, const Rgb& colour) {
+  return channel == Channel::luminance ? luminance(colour)
+                                       : colour[static_cast<std::size_t>(channel) - 1];
+}
+
+/// The light of a line in a channel, grey levels, summed over every fourth row. Noise takes as much
+/// as it adds, and cancels.
+std::int64_t line_light(const ColourPicture& dark, const ColourPicture& lit, Channel channel) {
+  std::int64_t light = 0;
+  const auto width = static_cast<std::size_t>(lit.width);
+  for (std::size_t first = 0; first < lit.pixels.size(); first += row_step * width) {
+    int darkest = 0;
+    int brightest = 0;
+    for (std::size_t i = first; i < first + width; ++i) {
+      const int change = static_cast<int>(level_in(channel, lit.pixels[i])) -
+                         static_cast<int>(level_in(channel, dark.pixels[i]));
+      darkest = std::min(darkest, change);
+      brightest = std::max(brightest, change);
+    }
+    light += brightest + darkest;
+  }
+  return light;
+}
+
 }  // namespace
+
+Picture to_picture(const ColourPicture& picture, Channel channel) {
+  Picture grey{.width = picture.width, .height = picture.height, .samples = {}};
+  grey.samples.reserve(picture.pixels.size());
+  for (const Rgb& pixel : picture.pixels) {
+    grey.samples.push_back(level_in(channel, pixel));
+  }
+  return grey;
+}
+
+Channel find_channel(const ColourPicture& dark, const ColourPicture& lit) {
+  const std::int64_t least = static_cast<std::int64_t>(lit.height) * (min_peak / gain) /
+                             static_cast<int>(row_step) / rows_per_lit_row;
+  std::int64_t most = std::max(brighter * line_light(dark, lit, Channel::luminance), least);
+  Channel best = Channel::luminance;
+  for (const Channel channel : {Channel::red, Channel::green, Channel::blue}) {
+    if (const std::int64_t light = line_light(dark, lit, channel); light > most) {
+      most = light;
+      best = channel;
+    }
+  }
+  return best;
+}
 
 LineScale line_scale(double pixel) {
   constexpr double fit_reach = 0.0011;  // metres: finer detail is noise

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "io/sensor_json.hpp"
+#include "octurn/light_channel.hpp"
 
 namespace octurn {
 namespace {
@@ -29,10 +30,42 @@ double pixel_at_object(const Scan& scan) {
   return std::max(seen.norm(), 0.05) / scan.intrinsics.fx;
 }
 
-Picture read_picture(const std::filesystem::path& folder, const std::string& file,
-                     const Intrinsics& lens) {
-  const std::string png = read_scan_file(folder / file);
-  return decode_picture_png(file, std::as_bytes(std::span(png)), lens.width, lens.height);
+/// A picture's file: greyscale, or in colour.
+class PictureFile {
+ public:
+  PictureFile(const std::filesystem::path& folder, const std::string& file, const Intrinsics& lens)
+      : name_(file), png_(read_scan_file(folder / file)), lens_(lens) {
+    if (has_colours()) {
+      colours_ = decode_rgb_png(name_, std::as_bytes(std::span(png_)), lens_.width, lens_.height);
+    }
+  }
+
+  const std::optional<ColourPicture>& colours() const { return colours_; }
+
+  Picture in(Channel channel) const {
+    return colours_ ? to_picture(*colours_, channel)
+                    : decode_picture_png(name_, std::as_bytes(std::span(png_)), lens_.width,
+                                         lens_.height);
+  }
+
+ private:
+  /// The 26th byte of a PNG, in its IHDR chunk, is the colour type.
+  bool has_colours() const {
+    constexpr std::size_t kind_at = 25;
+    constexpr char truecolour = 2;
+    return png_.size() > kind_at && png_[kind_at] == truecolour;
+  }
+
+  std::string name_;
+  std::string png_;
+  const Intrinsics& lens_;
+  std::optional<ColourPicture> colours_ = {};
+};
+
+/// The channel in which two pictures show a laser. A greyscale one has nothing but luminance.
+Channel channel_of(const PictureFile& dark, const PictureFile& lit) {
+  return dark.colours() && lit.colours() ? find_channel(*dark.colours(), *lit.colours())
+                                         : Channel::luminance;
 }
 
 const std::optional<SolvedPose>& find_solved_pose(const Scan& scan, const Shot& shot) {
@@ -86,10 +119,18 @@ const std::vector<LineProfile>& LaserLines::at(std::size_t stop) const {
   std::call_once(kept.read, [&] {
     const Intrinsics& lens = scan_.intrinsics;
     const std::vector<std::string>& files = scan_.shots[stop].pictures;
-    const Picture dark = read_picture(folder_, files.front(), lens);
+    const PictureFile dark(folder_, files.front(), lens);
+    Channel seen = Channel::luminance;  // in the dark picture
+    Picture without = dark.in(seen);
     for (std::size_t laser = 1; laser < files.size(); ++laser) {
-      const Picture lit = read_picture(folder_, files[laser], lens);
-      kept.lines.push_back(to_profile(find_line(dark, lit, scale_), lens, *scan_.laser));
+      const PictureFile lit(folder_, files[laser], lens);
+      const Channel channel = channel_of(dark, lit);
+      if (channel != seen) {
+        without = dark.in(channel);
+        seen = channel;
+      }
+      kept.lines.push_back(
+          to_profile(find_line(without, lit.in(channel), scale_), lens, *scan_.laser));
     }
   });
   return kept.lines;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 
+#include "octurn/light_channel.hpp"
 #include "support/random.hpp"
 
 namespace octurn {
@@ -266,6 +267,37 @@ TEST(FindLine, AveragesSpeckleAlongTheLine) {
   // A quadratic fitted to 2 n + 1 = 9 columns has 0.51 times their noise in the middle; through 3
   // columns it has all of it.
   EXPECT_LT(rms(4), 0.7 * rms(1));
+}
+
+/// A picture in colour: each channel's share of a line's light, beside grey noise of 4 levels.
+ColourPicture paint(const std::array<double, 3>& share, std::uint32_t seed) {
+  Random random(seed);
+  ColourPicture picture{.width = width, .height = height, .pixels = {}};
+  for (int v = 0; v < height; ++v) {
+    for (int u = 0; u < width; ++u) {
+      Rgb pixel{};
+      for (std::size_t channel = 0; channel < 3; ++channel) {
+        const double level = 40 + 4 * random.normal() + share[channel] * line(u, 50, 90);
+        pixel[channel] = static_cast<std::uint8_t>(std::clamp(std::lround(level), 0L, 255L));
+      }
+      picture.pixels.push_back(pixel);
+    }
+  }
+  return picture;
+}
+
+TEST(FindChannel, TakesTheColourOfALaser) {
+  const ColourPicture dark = paint({}, 1);
+  EXPECT_EQ(find_channel(dark, paint({1, 0.05, 0.05}, 2)), Channel::red);
+  EXPECT_EQ(find_channel(dark, paint({0.05, 0.1, 1}, 2)), Channel::blue);
+}
+
+// A camera has luminance at every pixel, and colours often at every second one.
+TEST(FindChannel, TakesLuminanceWhereItHasHalfOfTheLight) {
+  const ColourPicture dark = paint({}, 1);
+  EXPECT_EQ(find_channel(dark, paint({1, 1, 1}, 2)), Channel::luminance);
+  EXPECT_EQ(find_channel(dark, paint({0.2, 1, 0.2}, 2)), Channel::luminance);
+  EXPECT_EQ(find_channel(dark, dark), Channel::luminance);
 }
 
 }  // namespace

@@ -1,13 +1,19 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
 #include <numbers>
 #include <set>
+#include <span>
+#include <string>
 #include <utility>
 #include <vector>
 
 #include "core/laser/lit_scene.hpp"
 #include "core/mesh/surface.hpp"
+#include "io/sensor_json.hpp"
 #include "mesh/mesh_check.hpp"
 #include "octurn/reconstruct.hpp"
 #include "octurn/register.hpp"
@@ -96,6 +102,51 @@ TEST(LaserScan, HasItsPointsOnTheSurfacesOfRealMaterials) {
     ASSERT_GT(errors.size(), clean * 9 / 10) << name;
     EXPECT_LT(errors[errors.size() / 2], 0.05 * pixel) << name;
     EXPECT_LT(errors[errors.size() * 95 / 100], 0.2 * pixel) << name;
+  }
+}
+
+/// Writes the pictures of a scan in colour, as of lasers of one colour.
+/// @param share  of a laser's light in red, green and blue
+void paint(const std::filesystem::path& folder, const Scan& scan,
+           const std::array<double, 3>& share) {
+  const Intrinsics& lens = scan.intrinsics;
+  const auto read = [&](const std::string& file) {
+    const std::string png = read_scan_file(folder / file);
+    return decode_picture_png(file, std::as_bytes(std::span(png)), lens.width, lens.height);
+  };
+  for (const Shot& shot : scan.shots) {
+    const Picture dark = read(shot.pictures.front());
+    for (const std::string& file : shot.pictures) {
+      const Picture lit = read(file);
+      ColourPicture painted{.width = lens.width, .height = lens.height, .pixels = {}};
+      for (std::size_t i = 0; i < lit.samples.size(); ++i) {
+        Rgb pixel{};
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+          // The room is of one colour that is not grey.
+          const double room = dark.samples[i] + 7.0 * static_cast<double>(channel);
+          pixel[channel] = static_cast<std::uint8_t>(std::clamp(
+              std::lround(room + share[channel] * (lit.samples[i] - dark.samples[i])), 0L, 255L));
+        }
+        painted.pixels.push_back(pixel);
+      }
+      const auto png = encode_rgb_png(painted);
+      put(folder / file, {reinterpret_cast<const char*>(png.data()), png.size()});
+    }
+  }
+}
+
+// In luminance the line has a third, or a ninth, of its light, which is then below eight levels.
+TEST(LaserScan, FindsALaserInTheChannelOfItsColour) {
+  const std::size_t in_white = errors_in({}).size();
+  for (const auto& [name, share] :
+       {std::pair{"red", std::array{0.35, 0.01, 0.0}}, {"blue", {0.0, 0.02, 0.35}}}) {
+    const TemporaryFolder folder;
+    const Scan scan = write_laser_scan(folder.path(), ball_on_platform, 12);
+    paint(folder.path(), scan, share);
+    const std::vector<double> errors =
+        surface_errors(stored_snapshots(folder.path(), read_scan(folder.path())), 1);
+    EXPECT_GT(errors.size(), in_white * 7 / 10) << name;
+    EXPECT_LT(errors[errors.size() / 2], 0.0001) << name;
   }
 }
 

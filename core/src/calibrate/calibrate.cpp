@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <optional>
 #include <utility>
 #include <vector>
@@ -17,6 +18,7 @@
 #include "calibrate/surface_findings.hpp"
 #include "calibrate/turn_ratio.hpp"
 #include "io/number_text.hpp"
+#include "octurn/sensor_map.hpp"
 #include "octurn/units.hpp"
 
 namespace octurn {
@@ -32,12 +34,19 @@ constexpr double min_plane_share = 0.3;
 constexpr double max_position_sigma = 0.0006;  // metres
 // A larger sigma is accepted where the correction is large: a share of how far the pose moves.
 constexpr double worthwhile_sigma = 0.05;
+constexpr double worthwhile_direction_sigma = 0.2;  // a share of how far the axis tilts
 constexpr double max_direction_sigma_deg = 0.1;
 // Wrong optics do more harm than an axis that is this uncertain: 0.35 mm at a height of 100 mm.
 constexpr double max_direction_sigma_with_optics_deg = 0.2;
 constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 to 0.7 mm
 // The median residual may grow by this factor: the solver minimises weighted squares instead.
 constexpr double may_worsen = 1.02;
+// With few stops each reading is compared with few others, and a pose that fits these may be worse
+// for all else: it must also fit a stop that had no part in it.
+constexpr std::size_t few_stops = 12;
+// The share by which that stop's residuals must be smaller than with the configured pose, times the
+// number of stops: half of them with four stops, a quarter with eight.
+constexpr double gain_times_stops = 2;
 constexpr double max_shift = 0.040;  // metres
 constexpr double max_tilt_deg = 6;
 constexpr double max_last_step = 0.00001;  // metres
@@ -47,9 +56,10 @@ constexpr double settled_sigmas = 0.1;
 // and on tables that real sensors saw 0.27 to 0.82.
 constexpr double max_unevenness = 0.2;
 
-// Sigma of the plane as a prior of the axis's direction, for a platform that is square to its
+// Sigma of an even plane as a prior of the axis's direction, for a platform that is square to its
 // shaft.
 constexpr double tight_direction_deg = 0.02;
+constexpr double unevenness_lever = 0.1;  // metres: what unevenness lifts there tilts the plane
 constexpr double wobble_sigmas = 5;
 
 constexpr double agreeing_shift = 0.0001;  // metres
@@ -71,6 +81,24 @@ double mean_object_pixels(const TurnViews& views) {
   return pixels / static_cast<double>(std::max<std::size_t>(views.views.size(), 1));
 }
 
+/// Radians: by how much an uneven surface may tilt the plane that is fitted to it. 1/z is
+/// (normal / offset) . ray on the plane: an inverse depth that is off by d lifts it by d z offset.
+double plane_sigma(const SurfaceFindings& surface, const PlatformPlane& plane,
+                   const Eigen::Isometry3d& levelled) {
+  const double uneven = surface.unevenness.value_or(0);
+  const double beyond_noise =
+      std::sqrt(std::max(uneven * uneven - max_unevenness * max_unevenness, 0.0));
+  const double z = levelled.inverse().translation().z();  // of the platform's middle
+  return beyond_noise * disparity_unit * z * std::abs(plane.offset) / unevenness_lever;
+}
+
+/// Radians: sigma of the plane as a prior of the axis's direction.
+double plane_prior(const SurfaceFindings& surface, const PlatformPlane& plane,
+                   const Eigen::Isometry3d& levelled) {
+  return std::hypot(radians_from_degrees(tight_direction_deg),
+                    plane_sigma(surface, plane, levelled));
+}
+
 /// The angle between the solved axis and the plane's normal.
 double direction_off(const AxisSolution& solution, const PlatformPlane& plane) {
   const Vector3d normal = solution.platform_from_sensor.linear() * plane.normal;
@@ -79,8 +107,8 @@ double direction_off(const AxisSolution& solution, const PlatformPlane& plane) {
 
 /// Whether the axis is further from the plane's normal than the object's own sigma explains.
 /// @param solution  with the plane as a loose prior
-bool contradicts(const AxisSolution& solution, const PlatformPlane& plane) {
-  const double prior = radians_from_degrees(loose_direction_deg);
+/// @param prior     radians, its sigma
+bool contradicts(const AxisSolution& solution, const PlatformPlane& plane, double prior) {
   const double sigma = solution.direction_sigma();
   // The object's own information: what the prior adds is subtracted.
   const double information = std::max(1 / (sigma * sigma) - 1 / (prior * prior), 1.0);
@@ -122,15 +150,16 @@ TurnFaults find_faults(CalibrationReport& report, const TurnViews& views,
 /// Solves the axis and the angles at which a platform that slipped stood. The angles were found
 /// with an axis that the slips had shifted: each pass shows the rest.
 /// @param views  get the angles
+/// @param prior  as of `solve_axis`
 std::optional<AxisSolution> solve_slipped(CalibrationReport& report, TurnViews& views,
                                           const PlatformPlane& plane, Eigen::Isometry3d pose,
-                                          int threads) {
+                                          double prior, int threads) {
   constexpr int passes = 3;
   const std::vector<double> told = views.angles;
   std::optional<AxisSolution> solution;
   for (int pass = 0; pass < passes; ++pass) {
     std::ranges::transform(told, report.slipped, views.angles.begin(), std::plus<>());
-    solution = solve_axis(views, plane, pose, radians_from_degrees(loose_direction_deg), threads);
+    solution = solve_axis(views, plane, pose, prior, threads);
     const auto rest = solution ? solve_stop_offsets(views, solution->platform_from_sensor, threads)
                                : std::nullopt;
     if (!rest || pass + 1 == passes) {
@@ -149,8 +178,9 @@ std::optional<AxisSolution> solve_slipped(CalibrationReport& report, TurnViews& 
 std::optional<AxisSolution> solve(CalibrationReport& report, TurnViews& views,
                                   const PlatformPlane& plane, const SurfaceFindings& surface,
                                   const Eigen::Isometry3d& levelled, int threads) {
-  auto loose = solve_axis(views, plane, find_axis_start(views, levelled, threads),
-                          radians_from_degrees(loose_direction_deg), threads);
+  const double prior =
+      std::hypot(radians_from_degrees(loose_direction_deg), plane_sigma(surface, plane, levelled));
+  auto loose = solve_axis(views, plane, find_axis_start(views, levelled, threads), prior, threads);
   if (!loose) {
     return std::nullopt;
   }
@@ -161,17 +191,17 @@ std::optional<AxisSolution> solve(CalibrationReport& report, TurnViews& views,
     report.slipped = std::move(faults.slipped);
   }
   if (has_slipped(report)) {
-    loose = solve_slipped(report, views, plane, loose->platform_from_sensor, threads);
+    loose = solve_slipped(report, views, plane, loose->platform_from_sensor, prior, threads);
     if (!loose) {
       return std::nullopt;
     }
   }
   // A slip or a move tilts the axis, too.
-  if (!has_faults && contradicts(*loose, plane)) {
+  if (!has_faults && contradicts(*loose, plane, prior)) {
     return loose;
   }
   return solve_axis(views, plane, loose->platform_from_sensor,
-                    radians_from_degrees(tight_direction_deg), threads);
+                    plane_prior(surface, plane, levelled), threads);
 }
 
 /// Sets the distances of a solution from the configured pose.
@@ -217,6 +247,39 @@ double max_step(double position_sigma) {
   return std::max(max_last_step, settled_sigmas * position_sigma);
 }
 
+/// Refuses a pose from few stops if poses that are solved without one of the stops do not fit that
+/// stop much better than the configured one does, on average over all stops.
+/// @param views  has its pairs again at the end
+/// @param prior  as of `solve_axis`
+std::string refuse_few_stops(const CalibrationReport& report, TurnViews& views,
+                             const PlatformPlane& plane, const CalibrationTurn& turn, double prior,
+                             int threads) {
+  if (turn.angles.size() > few_stops || report.optics_differ || agrees_with_told(report)) {
+    return {};
+  }
+  const std::vector<StopPair> all = views.pairs;
+  const std::vector<double> as_told(turn.angles.size(), 0.0);
+  double before = 0;
+  double after = 0;
+  for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
+    const auto has_stop = [&](const StopPair& pair) {
+      return pair.from == stop || pair.to == stop;
+    };
+    views.pairs.clear();
+    std::ranges::remove_copy_if(all, std::back_inserter(views.pairs), has_stop);
+    const auto rest = solve_axis(views, plane, report.platform_from_sensor, prior, threads);
+    views.pairs.clear();
+    std::ranges::copy_if(all, std::back_inserter(views.pairs), has_stop);
+    const Eigen::Isometry3d& pose = rest ? rest->platform_from_sensor : turn.platform_from_sensor;
+    before += median_residual(views, turn.platform_from_sensor, as_told, threads);
+    after += median_residual(views, pose, as_told, threads);
+  }
+  views.pairs = all;
+  return after < (1 - gain_times_stops / static_cast<double>(turn.angles.size())) * before
+             ? ""
+             : "too few stops: a pose from all but one of them does not fit that one";
+}
+
 std::string refuse_solution(const CalibrationReport& report, double last_step) {
   if (last_step > max_step(report.position_sigma)) {
     return "the axis did not settle";
@@ -226,9 +289,10 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
     return "the axis is uncertain by " + mm_text(report.position_sigma, text_digits) +
            ": stand another object on the platform";
   }
-  if (report.direction_sigma > radians_from_degrees(report.optics_differ
-                                                        ? max_direction_sigma_with_optics_deg
-                                                        : max_direction_sigma_deg)) {
+  if (report.direction_sigma >
+      std::max(radians_from_degrees(report.optics_differ ? max_direction_sigma_with_optics_deg
+                                                         : max_direction_sigma_deg),
+               worthwhile_direction_sigma * report.tilt)) {
     return "the axis is uncertain by " + degrees_text(report.direction_sigma, text_digits) +
            ": stand another object on the platform";
   }
@@ -372,6 +436,10 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   std::string reason = surface.bump && surface.bump->size > max_after
                            ? report.findings.front().detail
                            : refuse_solution(report, last_step);
+  if (reason.empty()) {
+    reason = refuse_few_stops(report, views, plane, turn, plane_prior(surface, plane, levelled),
+                              threads);
+  }
   if (!surface.bump && (!reason.empty() || !all_stand_as_told(report) ||
                         looks_still(views, levelled, report.platform_from_sensor, threads))) {
     const TurnRatio turned =

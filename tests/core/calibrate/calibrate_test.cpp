@@ -214,6 +214,14 @@ TEST(Calibrate, AdvisesToFlattenASensorWhosePatternShowsOnThePlatform) {
   EXPECT_FALSE(has_no_map(calibrate(turn)));
 }
 
+TEST(Calibrate, TrustsAnUnevenPlatformLessAboutTheAxis) {
+  const auto right = rendered_turn(figure(), 24);
+  const CalibrationReport even = calibrate(right);
+  const CalibrationReport uneven = calibrate(with_pattern(right));
+  EXPECT_LE(degrees_from_radians(even.direction_sigma), 0.02);
+  EXPECT_GT(degrees_from_radians(uneven.direction_sigma), 0.025);
+}
+
 TEST(Calibrate, TellsThatThePlatformIsNotSquareToItsShaft) {
   const Eigen::Vector3d normal =
       Eigen::AngleAxisd(radians_from_degrees(0.6), Eigen::Vector3d(1, 2, 0).normalized()) *

@@ -40,13 +40,13 @@ class Latest {
     changed_.notify_all();
   }
 
-  /// Waits until the value satisfies the condition, for at most `patience`.
+  /// Waits until the value satisfies the condition, for at most `timeout`.
   /// @return the latest value in either case
   template <typename Wanted>
-  std::shared_ptr<const Value> wait(const std::stop_token& stop, std::chrono::milliseconds patience,
+  std::shared_ptr<const Value> wait(const std::stop_token& stop, std::chrono::milliseconds timeout,
                                     Wanted wanted) const {
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, stop, patience, [&] { return wanted(*value_); });
+    changed_.wait_for(lock, stop, timeout, [&] { return wanted(*value_); });
     return value_;
   }
 

@@ -16,10 +16,10 @@ namespace {
 /// Raw readings of one frame, unrounded; 0 for none.
 using Readings = std::vector<double>;
 
-constexpr int width = 640;
-constexpr int height = 480;
+constexpr int frame_width = 640;
+constexpr int frame_height = 480;
 
-std::size_t index(int u, int v) { return static_cast<std::size_t>(v * width + u); }
+std::size_t index(int u, int v) { return static_cast<std::size_t>(v * frame_width + u); }
 
 /// Converts depths to raw readings. @param frame  in units of 0.1 mm
 Readings to_readings(const DepthFrame& frame) {
@@ -107,9 +107,9 @@ double median(std::vector<double> values) {
 std::pair<int, int> top_edges(const Readings& readings) {
   int edges = 0;
   int whole = 0;
-  for (int u = 0; u < width; ++u) {
+  for (int u = 0; u < frame_width; ++u) {
     int above = -1;
-    for (int v = 0; v < height; ++v) {
+    for (int v = 0; v < frame_height; ++v) {
       const double here = readings[index(u, v)];
       if (here == 0) {
         continue;
@@ -134,8 +134,8 @@ NoiseFigures to_noise_figures(const std::vector<Readings>& frames) {
   int edges = 0;
   int whole_edges = 0;
   for (const Readings& readings : frames) {
-    for (int top = 0; top + PlaneWindow::side <= height; top += 20) {
-      for (int left = 0; left + PlaneWindow::side <= width; left += 20) {
+    for (int top = 0; top + PlaneWindow::side <= frame_height; top += 20) {
+      for (int left = 0; left + PlaneWindow::side <= frame_width; left += 20) {
         PlaneWindow window;
         const bool is_plane = window.fit(readings, left, top);
         const auto band = static_cast<int>(std::floor((window.depth() - 0.6) / 0.1));
@@ -217,8 +217,8 @@ double platform_error_mm(const std::vector<double>& depths) {
   const Eigen::Isometry3d pose = nominal_platform_from_sensor();
   double squares = 0;
   int count = 0;
-  for (int v = 0; v < height; ++v) {
-    for (int u = 0; u < width - 8; ++u) {
+  for (int v = 0; v < frame_height; ++v) {
+    for (int u = 0; u < frame_width - 8; ++u) {
       const Eigen::Vector3d ray = pose.linear() * ray_of(u, v);
       const double truth = -pose.translation().z() / ray.z();
       const double radius = (pose.translation() + truth * ray).head<2>().norm();
@@ -236,7 +236,7 @@ double platform_error_mm(const std::vector<double>& depths) {
 TEST(KinectNoise, FallsToHalfWhenTenFramesAreAveragedAndNoFurther) {
   const BoxesOnPlatform speck({{Eigen::Vector3d(-1, -1, 0), Eigen::Vector3d(1, 1, 1)}});
   const auto sensor = open_sensor(speck.uri(1, 5));
-  std::vector<double> sum(std::size_t{width} * height, 0.0);
+  std::vector<double> sum(std::size_t{frame_width} * frame_height, 0.0);
   std::vector<double> count(sum.size(), 0.0);
   const auto mean = [&] {
     std::vector<double> depths(sum.size());

@@ -138,7 +138,7 @@ TEST(LaserScanTime, LeavesThePlatform217MsToSettleBeforeALineIsExposed) {
   EXPECT_GE(time_400_stops(period, 0.02, laser_motion()).shortest_rest, settled + period - 1e-6);
 }
 
-ScanSettings settings(int stops) {
+ScanSettings timed_settings(int stops) {
   ScanSettings few;
   use_laser_capture_defaults(few);
   few.snapshots = stops;
@@ -168,7 +168,7 @@ TEST(LaserScanTime, HasEachPictureWrittenWhileTheNextOneIsTaken) {
     }
   });
   Rig rig(simulated.options(1000));
-  ASSERT_TRUE(run_scan(settings(stops), {}, folder.path(), *make_capture(rig), {}, {}));
+  ASSERT_TRUE(run_scan(timed_settings(stops), {}, folder.path(), *make_capture(rig), {}, {}));
   EXPECT_EQ(written, 2 * stops);
 }
 
@@ -190,7 +190,7 @@ TEST(LaserScanTime, HasAllOfAStopWrittenBeforeThePlatformMovesOn) {
       ++written.back();
     }
   }};
-  ASSERT_TRUE(run_scan(settings(stops), {}, folder.path(), *make_capture(rig), {}, observer));
+  ASSERT_TRUE(run_scan(timed_settings(stops), {}, folder.path(), *make_capture(rig), {}, observer));
   EXPECT_EQ(written, (std::vector<std::size_t>{0, 1, 2, 3}));
 }
 

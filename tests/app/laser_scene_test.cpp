@@ -92,7 +92,7 @@ class LaserSceneTest : public ::testing::Test {
 
 /// Error bound, metres: on the object a pixel is 0.9 mm wide, and the brightest pixel lies within
 /// one pixel of the line.
-constexpr double pixel = 0.0012;
+constexpr double pixel_on_box = 0.0012;
 
 TEST_F(LaserSceneTest, HasTheLineWhereItsPlaneMeetsTheBoxOrThePlatform) {
   const LaserSimulation told = simulation();
@@ -109,9 +109,10 @@ TEST_F(LaserSceneTest, HasTheLineWhereItsPlaneMeetsTheBoxOrThePlatform) {
       }
       const Vector3d point = meet(told, laser, *u, v);
       const double side = std::max(std::abs(point.x()), std::abs(point.y())) - 0.03;  // box: 0
-      const bool is_top = side < pixel && std::abs(point.z() - 0.04) < 2 * pixel;
-      const bool is_side = std::abs(side) < 2 * pixel && point.z() > -pixel && point.z() < 0.042;
-      const bool is_platform = std::abs(point.z()) < 2 * pixel && side > -pixel;
+      const bool is_top = side < pixel_on_box && std::abs(point.z() - 0.04) < 2 * pixel_on_box;
+      const bool is_side =
+          std::abs(side) < 2 * pixel_on_box && point.z() > -pixel_on_box && point.z() < 0.042;
+      const bool is_platform = std::abs(point.z()) < 2 * pixel_on_box && side > -pixel_on_box;
       const bool is_below = point.z() < -0.01;  // edge, table, wall
       on_box += is_top || is_side ? 1 : 0;
       on_platform += is_platform ? 1 : 0;
@@ -142,18 +143,18 @@ TEST_F(LaserSceneTest, ThrowsTheLasersShadow) {
         const auto sample = static_cast<std::size_t>(v * told.lens.width + u);
         const Vector3d point = meet(told, 0, u, v);
         const bool is_there =
-            std::abs(point.z()) < 2 * pixel && point.x() > from_x && point.x() < to_x;
+            std::abs(point.z()) < 2 * pixel_on_box && point.x() > from_x && point.x() < to_x;
         points += is_there && lit.samples[sample] > dark.samples[sample] + 8 ? 1 : 0;
       }
     }
     return points;
   };
-  const double begin = -0.03 - 2 * pixel;
+  const double begin = -0.03 - 2 * pixel_on_box;
   const double end = -0.03 - shadow;
-  EXPECT_EQ(lit_points(end + 3 * pixel, begin), 0);
-  EXPECT_GT(lit_points(-0.14, end - 3 * pixel), 2);
+  EXPECT_EQ(lit_points(end + 3 * pixel_on_box, begin), 0);
+  EXPECT_GT(lit_points(-0.14, end - 3 * pixel_on_box), 2);
   std::ofstream(file_) << box_stl(0.5);  // 0.5 mm high: hardly any shadow
-  EXPECT_GT(lit_points(end + 3 * pixel, begin), 4);
+  EXPECT_GT(lit_points(end + 3 * pixel_on_box, begin), 4);
 }
 
 TEST_F(LaserSceneTest, TakesTheSamePicturesForTheSameSeed) {

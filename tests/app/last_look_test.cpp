@@ -37,7 +37,7 @@ BoxesOnPlatform blocks_moved(const Vector3d& by) {
                           AlignedBox3d(corner - speck, corner)});
 }
 
-constexpr int stops = 8;
+constexpr int look_stops = 8;
 
 /// A simulated sensor with a Kinect's noise and pattern, whose object is moved after some looks.
 class SensorOfMovedObject final : public DepthSensor {
@@ -61,7 +61,7 @@ class SensorOfMovedObject final : public DepthSensor {
   std::optional<Tilt> tilt() const override { return sensor_->tilt(); }
   std::optional<PacketCounts> packet_counts() const override { return sensor_->packet_counts(); }
   void show_angle(double angle) override {
-    const double stop = angle * stops / (2 * std::numbers::pi);
+    const double stop = angle * look_stops / (2 * std::numbers::pi);
     const auto nearest = static_cast<int>(std::lround(stop));
     if (std::abs(stop - nearest) < 0.01 && std::exchange(stop_, nearest) != nearest &&
         looks_-- == 0) {
@@ -85,7 +85,7 @@ class SensorOfMovedObject final : public DepthSensor {
 };
 
 ScanSettings eight_stops(PoseSource pose) {
-  ScanSettings settings = few_snapshots(stops);
+  ScanSettings settings = few_snapshots(look_stops);
   settings.pose = pose;
   return settings;
 }
@@ -119,7 +119,7 @@ std::string move_told(const Model& model) {
 
 TEST(LastLook, TellsByHowMuchTheObjectMovedInMidScan) {
   const TemporaryFolder folder;
-  const auto model = scan({1.5, -1.5, 0}, stops / 2, PoseSource::configured, folder.path());
+  const auto model = scan({1.5, -1.5, 0}, look_stops / 2, PoseSource::configured, folder.path());
   ASSERT_TRUE(model);
   const std::string detail = move_told(*model);
   ASSERT_NE(detail.find("moved by "), std::string::npos);
@@ -130,7 +130,7 @@ TEST(LastLook, TellsByHowMuchTheObjectMovedInMidScan) {
 
 TEST(LastLook, SeesAMoveAfterTheLastStopThatNoSnapshotShows) {
   const TemporaryFolder folder;
-  const auto model = scan({2.1, 0, 0}, stops, PoseSource::solved, folder.path());
+  const auto model = scan({2.1, 0, 0}, look_stops, PoseSource::solved, folder.path());
   ASSERT_TRUE(model);
   EXPECT_NE(move_told(*model).find("moved by "), std::string::npos);
 }
@@ -138,7 +138,7 @@ TEST(LastLook, SeesAMoveAfterTheLastStopThatNoSnapshotShows) {
 TEST(LastLook, TellsNothingOfAnObjectAtRest) {
   for (const PoseSource pose : {PoseSource::configured, PoseSource::solved}) {
     const TemporaryFolder folder;
-    const auto model = scan({0, 0, 0}, stops / 2, pose, folder.path());
+    const auto model = scan({0, 0, 0}, look_stops / 2, pose, folder.path());
     ASSERT_TRUE(model);
     EXPECT_EQ(moves_told(*model), std::vector<std::string>());
     const auto move = read_object_move(folder.path());
@@ -149,10 +149,10 @@ TEST(LastLook, TellsNothingOfAnObjectAtRest) {
 
 TEST(LastLook, IsInNoModelAndInNoSnapshot) {
   const TemporaryFolder folder;
-  ASSERT_TRUE(scan({0, 0, 0}, stops, PoseSource::configured, folder.path()));
+  ASSERT_TRUE(scan({0, 0, 0}, look_stops, PoseSource::configured, folder.path()));
   const std::string model = content_of(folder.path() / "Scan.stl");
-  EXPECT_EQ(read_scan(folder.path()).shots.size(), std::size_t{stops});
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "snapshots"), {}), stops);
+  EXPECT_EQ(read_scan(folder.path()).shots.size(), std::size_t{look_stops});
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder.path() / "snapshots"), {}), look_stops);
 
   // A scan that was killed before its model was made has stored the last look's result, and makes
   // the model without a sensor.

@@ -17,7 +17,7 @@
 namespace octurn {
 namespace {
 
-ScanSettings settings(int stops) {
+ScanSettings preview_settings(int stops) {
   ScanSettings few;
   use_laser_capture_defaults(few);
   few.snapshots = stops;
@@ -63,7 +63,8 @@ class LinePreviewOfAScan : public ::testing::Test {
     const ScanObserver observer{.on_added = [&](const Reconstructor& reconstruction, int done) {
       shown.push_back({.stops = done, .parts = parts_with_facets(preview_of(reconstruction))});
     }};
-    EXPECT_TRUE(run_scan(settings(stops), {}, folder_.path(), *make_capture(rig), {}, observer));
+    EXPECT_TRUE(
+        run_scan(preview_settings(stops), {}, folder_.path(), *make_capture(rig), {}, observer));
     return shown;
   }
 
@@ -82,7 +83,7 @@ TEST_F(LinePreviewOfAScan, GrowsRoundTheObjectWhileThePlatformTurns) {
 TEST_F(LinePreviewOfAScan, LeavesTheModelAsItIsMadeFromTheFolder) {
   scan(12);
   const Scan stored = read_scan(folder_.path());
-  ReconstructOptions options = reconstruct_options(settings(12), {.threads = 1});
+  ReconstructOptions options = reconstruct_options(preview_settings(12), {.threads = 1});
   options.clip = stored.clip;
   fit_to_scan(options, stored);
   const SnapshotSource snapshots = stored_snapshots(folder_.path(), stored);
@@ -96,7 +97,7 @@ TEST_F(LinePreviewOfAScan, LeavesTheModelAsItIsMadeFromTheFolder) {
 TEST_F(LinePreviewOfAScan, AddsEachLineOnce) {
   scan(12);
   const Scan stored = read_scan(folder_.path());
-  ReconstructOptions options = reconstruct_options(settings(12), {.threads = 1});
+  ReconstructOptions options = reconstruct_options(preview_settings(12), {.threads = 1});
   options.clip = stored.clip;
   fit_to_scan(options, stored);
   const auto last_seen = [&](const std::vector<std::size_t>& asked) {

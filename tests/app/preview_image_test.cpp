@@ -10,15 +10,15 @@
 namespace octurn {
 namespace {
 
-struct Picture {
+struct DecodedPreview {
   spng_ihdr header = {};
   std::vector<std::uint8_t> samples = {};
   int at(int x, int y) const { return samples[static_cast<std::size_t>(y * 320 + x)]; }
 };
 
-Picture decoded(const std::string& png) {
+DecodedPreview decoded(const std::string& png) {
   const std::unique_ptr<spng_ctx, void (*)(spng_ctx*)> context(spng_ctx_new(0), spng_ctx_free);
-  Picture picture;
+  DecodedPreview picture;
   std::size_t size = 0;
   spng_set_png_buffer(context.get(), png.data(), png.size());
   spng_get_ihdr(context.get(), &picture.header);
@@ -36,7 +36,7 @@ DepthFrame frame_of(int width, int height, std::uint16_t depth) {
 
 TEST(PreviewImage, IsGreyOf8BitsAnd320By240) {
   for (const auto& [width, height] : {std::pair{640, 480}, {320, 240}, {512, 424}, {64, 48}}) {
-    const Picture picture = decoded(preview_png(frame_of(width, height, 6500), 0.0001));
+    const DecodedPreview picture = decoded(preview_png(frame_of(width, height, 6500), 0.0001));
     EXPECT_EQ(picture.header.width, 320U);
     EXPECT_EQ(picture.header.height, 240U);
     EXPECT_EQ(picture.header.bit_depth, 8);
@@ -52,7 +52,7 @@ TEST(PreviewImage, IsBrighterTheNearerAndBlackWithoutAReading) {
       std::fill_n(frame.depth.begin() + static_cast<long>(y * 640 + i * 80), 80, depths_mm10[i]);
     }
   }
-  const Picture picture = decoded(preview_png(frame, 0.0001));
+  const DecodedPreview picture = decoded(preview_png(frame, 0.0001));
   EXPECT_EQ(picture.at(10, 100), 0);
   EXPECT_GT(picture.at(50, 100), 15);  // far away, but brighter than no reading
   for (int band = 2; band < 7; ++band) {
@@ -72,7 +72,7 @@ TEST(PreviewImage, HasTheRangeOfItsSensor) {
 TEST(PreviewImage, KeepsThePlaceOfThings) {
   DepthFrame frame = frame_of(640, 480, 15000);
   frame.depth[240 * 640 + 100] = 5000;
-  const Picture picture = decoded(preview_png(frame, 0.0001));
+  const DecodedPreview picture = decoded(preview_png(frame, 0.0001));
   EXPECT_GT(picture.at(50, 120), picture.at(51, 120));
   EXPECT_GT(picture.at(50, 120), picture.at(50, 121));
 }

@@ -19,19 +19,19 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int stops = 6;
-constexpr double speed = 200;
+constexpr int laser_stops = 6;
+constexpr double laser_speed = 200;
 
-ScanSettings settings() {
+ScanSettings laser_scan_settings() {
   ScanSettings few;
   use_laser_capture_defaults(few);
-  few.snapshots = stops;
+  few.snapshots = laser_stops;
   few.leaf_size = 0.004;
   few.pose = PoseSource::configured;
   return few;
 }
 
-Job ended(Scanner& scanner) {
+Job ended_job(Scanner& scanner) {
   const Status status = scanner.wait_until_done(patience);
   EXPECT_FALSE(status.busy());
   return *status.job;
@@ -54,9 +54,9 @@ class ScanByLaser : public ::testing::Test {
 };
 
 TEST_F(ScanByLaser, StoresAFolderThatTheReconstructionReads) {
-  Scanner scanner(rig_.options(speed), {}, store_);
-  scanner.start(settings());
-  const Job job = ended(scanner);
+  Scanner scanner(rig_.options(laser_speed), {}, store_);
+  scanner.start(laser_scan_settings());
+  const Job job = ended_job(scanner);
   ASSERT_EQ(job.state, JobState::finished) << job.failure->detail;
   EXPECT_TRUE(job.model->report.watertight);
   EXPECT_FALSE(rig_.is_lit());
@@ -65,20 +65,20 @@ TEST_F(ScanByLaser, StoresAFolderThatTheReconstructionReads) {
   const Scan scan = read_scan(folder);
   ASSERT_TRUE(scan.laser);
   EXPECT_EQ(scan.sensor_name, "Laser line (simulated)");
-  ASSERT_EQ(scan.shots.size(), std::size_t{stops});
+  ASSERT_EQ(scan.shots.size(), std::size_t{laser_stops});
   EXPECT_EQ(scan.shots[1].pictures,
             (std::vector<std::string>{"snapshots/001-dark.png", "snapshots/001-left.png",
                                       "snapshots/001-right.png"}));
-  EXPECT_NEAR(scan.shots[1].angle, 6.283185307179586 / stops, 0.01);  // one motor step
+  EXPECT_NEAR(scan.shots[1].angle, 6.283185307179586 / laser_stops, 0.01);  // one motor step
   const Snapshot snapshot = stored_snapshots(folder, scan).read(0);
   ASSERT_EQ(snapshot.strips.size(), 2U);
   EXPECT_GT(snapshot.strips[0].points.size(), 100U);
 }
 
 TEST_F(ScanByLaser, HasThePicturesAndTheModelInColour) {
-  Scanner scanner(rig_.options(speed), {}, store_);
-  scanner.start(settings());
-  const Job job = ended(scanner);
+  Scanner scanner(rig_.options(laser_speed), {}, store_);
+  scanner.start(laser_scan_settings());
+  const Job job = ended_job(scanner);
   ASSERT_EQ(job.state, JobState::finished) << job.failure->detail;
   EXPECT_TRUE(job.builds.have_colours);
   EXPECT_TRUE(store_.get(job.id).builds.have_colours);
@@ -94,9 +94,9 @@ TEST_F(ScanByLaser, HasThePicturesAndTheModelInColour) {
 }
 
 TEST_F(ScanByLaser, RefusesColoursThatTakeMoreMemoryThanIsAllowed) {
-  Scanner scanner(rig_.options(speed), {}, store_);
-  scanner.start(settings());
-  const Job job = ended(scanner);
+  Scanner scanner(rig_.options(laser_speed), {}, store_);
+  scanner.start(laser_scan_settings());
+  const Job job = ended_job(scanner);
   const fs::path model = store_.model_file(job.id);
   const auto colour = [&](std::size_t limit) {
     colour_model(model, scan_of_model(store_, job, 0), Colours::pictures, limit, {});
@@ -109,9 +109,9 @@ TEST_F(ScanByLaser, RefusesColoursThatTakeMoreMemoryThanIsAllowed) {
 }
 
 TEST_F(ScanByLaser, EndsColoursWhenItIsStopped) {
-  Scanner scanner(rig_.options(speed), {}, store_);
-  scanner.start(settings());
-  const Job job = ended(scanner);
+  Scanner scanner(rig_.options(laser_speed), {}, store_);
+  scanner.start(laser_scan_settings());
+  const Job job = ended_job(scanner);
   std::stop_source stop;
   stop.request_stop();
   const fs::path model = store_.model_file(job.id);
@@ -124,14 +124,14 @@ TEST_F(ScanByLaser, EndsColoursWhenItIsStopped) {
 
 TEST_F(ScanByLaser, HasALaserOnForItsOwnPictureAlone) {
   {
-    Scanner scanner(rig_.options(speed), {}, store_);
-    scanner.start(settings());
-    ended(scanner);
+    Scanner scanner(rig_.options(laser_speed), {}, store_);
+    scanner.start(laser_scan_settings());
+    ended_job(scanner);
   }
   const std::string log = rig_.log();
   const std::size_t begin = log.find('A');
   std::string expected;
-  for (int stop = 0; stop < stops; ++stop) {
+  for (int stop = 0; stop < laser_stops; ++stop) {
     expected += std::string(stop == 0 ? "" : "p") + "ApaBpb";
   }
   ASSERT_NE(begin, std::string::npos);
@@ -140,36 +140,36 @@ TEST_F(ScanByLaser, HasALaserOnForItsOwnPictureAlone) {
 }
 
 TEST_F(ScanByLaser, TakesAStopAgainWhosePictureIsLost) {
-  Scanner scanner(rig_.options(speed), {}, store_);
+  Scanner scanner(rig_.options(laser_speed), {}, store_);
   before_picture(scanner, 7, [this] { rig_.lost_pictures = 1; });
-  scanner.start(settings());
-  const Job job = ended(scanner);
+  scanner.start(laser_scan_settings());
+  const Job job = ended_job(scanner);
   ASSERT_EQ(job.state, JobState::finished) << job.failure->detail;
-  EXPECT_EQ(read_scan(store_.folder(job.id)).shots.size(), std::size_t{stops});
+  EXPECT_EQ(read_scan(store_.folder(job.id)).shots.size(), std::size_t{laser_stops});
 }
 
 TEST_F(ScanByLaser, PausesWithoutItsCameraAndGoesOnAtTheSameStop) {
-  Scanner scanner(rig_.options(speed), {}, store_);
+  Scanner scanner(rig_.options(laser_speed), {}, store_);
   before_picture(scanner, 10, [this] { rig_.is_unplugged = true; });
-  scanner.start(settings());
-  const Job paused = ended(scanner);
+  scanner.start(laser_scan_settings());
+  const Job paused = ended_job(scanner);
   ASSERT_EQ(paused.state, JobState::paused);
   EXPECT_EQ(paused.failure->code, ErrorCode::sensor_missing);
   EXPECT_FALSE(rig_.is_lit());
   EXPECT_GT(paused.snapshots_done, 0);
-  EXPECT_LT(paused.snapshots_done, stops);
+  EXPECT_LT(paused.snapshots_done, laser_stops);
   EXPECT_EQ(read_scan(store_.folder(paused.id)).shots.size(),
             static_cast<std::size_t>(paused.snapshots_done));
   rig_.is_unplugged = false;
   ASSERT_TRUE(scanner.resume(paused.id));
-  EXPECT_EQ(ended(scanner).state, JobState::finished);
+  EXPECT_EQ(ended_job(scanner).state, JobState::finished);
 }
 
 TEST_F(ScanByLaser, PausesWithTheNameOfALaserThatGivesNoLight) {
   rig_.dark_laser = 0;
-  Scanner scanner(rig_.options(speed), {}, store_);
-  scanner.start(settings());
-  const Job paused = ended(scanner);
+  Scanner scanner(rig_.options(laser_speed), {}, store_);
+  scanner.start(laser_scan_settings());
+  const Job paused = ended_job(scanner);
   ASSERT_EQ(paused.state, JobState::paused);
   EXPECT_EQ(paused.failure->code, ErrorCode::sensor_blind);
   EXPECT_NE(paused.failure->detail.find("laser left"), std::string::npos) << paused.failure->detail;
@@ -178,10 +178,10 @@ TEST_F(ScanByLaser, PausesWithTheNameOfALaserThatGivesNoLight) {
 }
 
 TEST_F(ScanByLaser, EndsWithItsLasersOffWhenItIsCancelled) {
-  Scanner scanner(rig_.options(speed), {}, store_);
+  Scanner scanner(rig_.options(laser_speed), {}, store_);
   before_picture(scanner, 5, [&] { scanner.cancel(scanner.status().job->id); });
-  scanner.start(settings());
-  EXPECT_EQ(ended(scanner).state, JobState::cancelled);
+  scanner.start(laser_scan_settings());
+  EXPECT_EQ(ended_job(scanner).state, JobState::cancelled);
   EXPECT_FALSE(rig_.is_lit());
 }
 

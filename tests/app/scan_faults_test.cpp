@@ -18,12 +18,12 @@ namespace {
 namespace fs = std::filesystem;
 using namespace std::chrono_literals;
 
-constexpr int stops = 4;
+constexpr int fault_stops = 4;
 constexpr std::chrono::hours forever(1'000'000);  // also at that speed
-constexpr double speed = 500;  // a failing stop is retried for 60 ms in place of 30 s
+constexpr double fault_speed = 500;  // a failing stop is retried for 60 ms in place of 30 s
 
-ScanSettings settings(Method method = Method::solid) {
-  return {.snapshots = stops, .frames = 2, .method = method, .leaf_size = 0.004};
+ScanSettings fault_settings(Method method = Method::solid) {
+  return {.snapshots = fault_stops, .frames = 2, .method = method, .leaf_size = 0.004};
 }
 
 Job ended(const Scanner& scanner) {
@@ -36,9 +36,9 @@ Job ended(const Scanner& scanner) {
 std::string undisturbed_model(Method method = Method::solid) {
   const TemporaryFolder folder;
   ScanStore store(folder.path());
-  FaultyRig rig(stops);
-  Scanner scanner(rig.options(speed), {}, store);
-  scanner.start(settings(method));
+  FaultyRig rig(fault_stops);
+  Scanner scanner(rig.options(fault_speed), {}, store);
+  scanner.start(fault_settings(method));
   const Job job = ended(scanner);
   EXPECT_EQ(job.state, JobState::finished);
   return content_of(store.model_file(job.id));
@@ -68,14 +68,14 @@ class ScanFaults : public ::testing::TestWithParam<Case> {};
 TEST_P(ScanFaults, PauseAScanAtAnyStopAndItGoesOnFromThere) {
   const Case& fault = GetParam();
   const std::string model = undisturbed_model();
-  for (int stop = fault.first_stop; stop < stops; ++stop) {
+  for (int stop = fault.first_stop; stop < fault_stops; ++stop) {
     SCOPED_TRACE(stop);
     const TemporaryFolder folder;
     ScanStore store(folder.path());
-    FaultyRig rig(stops);
-    Scanner scanner(rig.options(speed), {}, store);
+    FaultyRig rig(fault_stops);
+    Scanner scanner(rig.options(fault_speed), {}, store);
     rig.fail(fault.fault, stop);
-    scanner.start(settings());
+    scanner.start(fault_settings());
     const Job paused = ended(scanner);
     ASSERT_EQ(paused.state, JobState::paused);
     EXPECT_EQ(to_string(paused.failure->code), fault.code);
@@ -90,7 +90,7 @@ TEST_P(ScanFaults, PauseAScanAtAnyStopAndItGoesOnFromThere) {
     const Job done = ended(scanner);
     ASSERT_EQ(done.state, JobState::finished) << (done.failure ? done.failure->detail : "");
     EXPECT_FALSE(done.failure);
-    EXPECT_EQ(done.snapshots_done, stops);
+    EXPECT_EQ(done.snapshots_done, fault_stops);
     EXPECT_TRUE(content_of(store.model_file(done.id)) == model);
     EXPECT_FALSE(rig.is_motor_on());
   }
@@ -98,14 +98,14 @@ TEST_P(ScanFaults, PauseAScanAtAnyStopAndItGoesOnFromThere) {
 
 TEST_P(ScanFaults, ThatPassDoNotEvenPauseAScan) {
   const std::string model = undisturbed_model();
-  for (int stop = GetParam().first_stop; stop < stops; ++stop) {
+  for (int stop = GetParam().first_stop; stop < fault_stops; ++stop) {
     SCOPED_TRACE(stop);
     const TemporaryFolder folder;
     ScanStore store(folder.path());
-    FaultyRig rig(stops);
-    Scanner scanner(rig.options(speed, {.time = forever}), {}, store);
+    FaultyRig rig(fault_stops);
+    Scanner scanner(rig.options(fault_speed, {.time = forever}), {}, store);
     rig.fail(GetParam().fault, stop);
-    scanner.start(settings());
+    scanner.start(fault_settings());
     const Status failing = wait_until(
         scanner, [](const Status& status) { return !status.busy() || status.job->failure; });
     EXPECT_TRUE(failing.busy());
@@ -129,7 +129,7 @@ class PausedScan : public ::testing::Test {
   /// A scan that is paused at stop 2.
   Job pause() {
     rig_.fail(Fault::unplugged, 2);
-    scanner_.start(settings());
+    scanner_.start(fault_settings());
     const Job job = ended(scanner_);
     EXPECT_EQ(job.state, JobState::paused);
     return job;
@@ -137,8 +137,8 @@ class PausedScan : public ::testing::Test {
 
   TemporaryFolder folder_ = {};
   ScanStore store_{folder_.path()};
-  FaultyRig rig_{stops};
-  Scanner scanner_{rig_.options(speed), {}, store_};
+  FaultyRig rig_{fault_stops};
+  Scanner scanner_{rig_.options(fault_speed), {}, store_};
 };
 
 TEST_F(PausedScan, PausesAgainIfNothingWasMended) {
@@ -190,7 +190,7 @@ TEST_F(PausedScan, LetsAnotherScanBeMadeMeanwhile) {
   const Job job = pause();
   rig_.mend();
   rig_.hold();
-  const auto other = scanner_.start(settings());
+  const auto other = scanner_.start(fault_settings());
   EXPECT_FALSE(scanner_.resume(job.id));  // as the other scan runs
   rig_.let_go();
   ASSERT_TRUE(other);
@@ -205,8 +205,8 @@ TEST_F(PausedScan, IsStillPausedForTheNextRunOfTheProgram) {
   const TemporaryFolder folder;
   fs::copy(folder_.path(), folder.path(), fs::copy_options::recursive);
   ScanStore store(folder.path());
-  FaultyRig rig(stops, rig_.position());
-  Scanner scanner(rig.options(speed), {}, store);
+  FaultyRig rig(fault_stops, rig_.position());
+  Scanner scanner(rig.options(fault_speed), {}, store);
   EXPECT_EQ(store.find(job.id)->state, JobState::paused);
   ASSERT_TRUE(scanner.resume(job.id));
   EXPECT_EQ(ended(scanner).state, JobState::finished);
@@ -216,10 +216,10 @@ TEST_F(PausedScan, IsStillPausedForTheNextRunOfTheProgram) {
 TEST(ScanThatTriesAgain, TellsWhatItWaitsForAndCanBeCancelled) {
   const TemporaryFolder folder;
   ScanStore store(folder.path());
-  FaultyRig rig(stops);
+  FaultyRig rig(fault_stops);
   rig.fail(Fault::silent, 1);
-  Scanner patient(rig.options(speed, {.time = forever, .interval = forever}), {}, store);
-  patient.start(settings());
+  Scanner patient(rig.options(fault_speed, {.time = forever, .interval = forever}), {}, store);
+  patient.start(fault_settings());
   const Status status =
       wait_until(patient, [](const Status& now) { return !now.busy() || now.job->failure; });
   EXPECT_EQ(status.job->state, JobState::running);
@@ -230,11 +230,11 @@ TEST(ScanThatTriesAgain, TellsWhatItWaitsForAndCanBeCancelled) {
 }
 
 TEST(CancelledScan, EndsAtAnyStopAndKeepsItsSnapshots) {
-  for (int stop = 0; stop < stops; ++stop) {
+  for (int stop = 0; stop < fault_stops; ++stop) {
     SCOPED_TRACE(stop);
     const TemporaryFolder folder;
     ScanStore store(folder.path());
-    FaultyRig rig(stops);
+    FaultyRig rig(fault_stops);
     std::atomic<Scanner*> scanning = nullptr;
     rig.on_frame = [&](int now) {
       Scanner* const scanner = scanning;
@@ -243,9 +243,9 @@ TEST(CancelledScan, EndsAtAnyStopAndKeepsItsSnapshots) {
         scanner->cancel(status.job->id);
       }
     };
-    Scanner scanner(rig.options(speed), {}, store);
+    Scanner scanner(rig.options(fault_speed), {}, store);
     scanning = &scanner;
-    scanner.start(settings());
+    scanner.start(fault_settings());
     const Job job = ended(scanner);
     EXPECT_EQ(job.state, JobState::cancelled);
     EXPECT_EQ(job.snapshots_done, stop);
@@ -260,13 +260,13 @@ class KilledScan : public ::testing::TestWithParam<Method> {};
 // A copy of the folder taken at a stop is what a kill or a power cut would leave.
 TEST_P(KilledScan, GoesOnFromAnyStop) {
   const std::string model = undisturbed_model(GetParam());
-  std::array<TemporaryFolder, stops> left;
-  std::array<std::int64_t, stops> left_at = {};
+  std::array<TemporaryFolder, fault_stops> left;
+  std::array<std::int64_t, fault_stops> left_at = {};
   {
     const TemporaryFolder folder;
     ScanStore store(folder.path());
-    FaultyRig rig(stops);
-    std::array<bool, stops> copied = {};
+    FaultyRig rig(fault_stops);
+    std::array<bool, fault_stops> copied = {};
     rig.on_frame = [&](int stop) {
       const auto at = static_cast<std::size_t>(stop);
       if (!store.list().empty() && !std::exchange(copied[at], true)) {
@@ -274,18 +274,18 @@ TEST_P(KilledScan, GoesOnFromAnyStop) {
         left_at[at] = rig.position();
       }
     };
-    Scanner scanner(rig.options(speed), {}, store);
-    scanner.start(settings(GetParam()));
+    Scanner scanner(rig.options(fault_speed), {}, store);
+    scanner.start(fault_settings(GetParam()));
     ASSERT_EQ(ended(scanner).state, JobState::finished);
   }
-  for (std::size_t stop = 0; stop < stops; ++stop) {
+  for (std::size_t stop = 0; stop < fault_stops; ++stop) {
     SCOPED_TRACE(stop);
     ScanStore store(left[stop].path());
     const Job interrupted = store.list().at(0);
     EXPECT_EQ(interrupted.state, JobState::interrupted);
     EXPECT_EQ(interrupted.snapshots_done, static_cast<int>(stop));
-    FaultyRig rig(stops, left_at[stop]);
-    Scanner scanner(rig.options(speed), {}, store);
+    FaultyRig rig(fault_stops, left_at[stop]);
+    Scanner scanner(rig.options(fault_speed), {}, store);
     ASSERT_TRUE(scanner.resume(interrupted.id));
     const Job done = ended(scanner);
     ASSERT_EQ(done.state, JobState::finished) << done.failure->detail;

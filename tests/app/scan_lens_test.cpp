@@ -20,7 +20,7 @@
 namespace octurn {
 namespace {
 
-constexpr double speed = 200;
+constexpr double board_speed = 200;
 constexpr double square = metres_from_mm(board_square_mm);
 
 ScanSettings few_stops() {
@@ -80,7 +80,7 @@ class ScanLens : public ::testing::Test {
 };
 
 TEST_F(ScanLens, IsFoundFromABoardKeptAndUsedByTheNextScan) {
-  Scanner scanner(rig_.options(speed), {}, store_);
+  Scanner scanner(rig_.options(board_speed), {}, store_);
   ASSERT_TRUE(scanner.look_at_board(square));
   const CalibrationRun run = ended(scanner);
   ASSERT_EQ(run.state, CalibrationRun::State::done) << (run.failure ? run.failure->detail
@@ -110,7 +110,7 @@ TEST_F(ScanLens, IsFoundFromABoardKeptAndUsedByTheNextScan) {
 }
 
 TEST_F(ScanLens, OfAScanThatGoesOnIsTheOneItWasBegunWith) {
-  Scanner scanner(rig_.options(speed), {}, store_);
+  Scanner scanner(rig_.options(board_speed), {}, store_);
   rig_.on_picture([&](SimulatedLaserRig& rig) {
     if (std::ranges::count(rig.log(), 'B') == 2) {  // at the second stop
       scanner.pause(scanner.status().job->id);
@@ -129,7 +129,7 @@ TEST_F(ScanLens, OfAScanThatGoesOnIsTheOneItWasBegunWith) {
 }
 
 TEST_F(ScanLens, IsSolvedEarlyWhereSomebodySaysThatItIsEnough) {
-  Scanner scanner(rig_.options(speed), {}, store_);
+  Scanner scanner(rig_.options(board_speed), {}, store_);
   EXPECT_FALSE(scanner.solve_lens());
   after_views(scanner, 2, [&] { EXPECT_TRUE(scanner.solve_lens()); });
   ASSERT_TRUE(scanner.look_at_board(square));
@@ -140,7 +140,7 @@ TEST_F(ScanLens, IsSolvedEarlyWhereSomebodySaysThatItIsEnough) {
 }
 
 TEST_F(ScanLens, IsNotLookedForAnyMoreAfterACancel) {
-  Scanner scanner(rig_.options(speed), {}, store_);
+  Scanner scanner(rig_.options(board_speed), {}, store_);
   after_views(scanner, 1, [&] {
     EXPECT_FALSE(scanner.look_at_board(square)) << "one at a time";
     EXPECT_TRUE(scanner.cancel_calibration());
@@ -150,7 +150,7 @@ TEST_F(ScanLens, IsNotLookedForAnyMoreAfterACancel) {
 }
 
 TEST_F(ScanLens, SaysWhatFailsWhereTheCameraIsPulled) {
-  Scanner scanner(rig_.options(speed), {}, store_);
+  Scanner scanner(rig_.options(board_speed), {}, store_);
   after_views(scanner, 1, [&] { rig_.is_unplugged = true; });
   ASSERT_TRUE(scanner.look_at_board(square));
   const CalibrationRun run = ended(scanner);

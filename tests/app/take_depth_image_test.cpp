@@ -12,7 +12,7 @@ namespace octurn {
 namespace {
 
 constexpr std::size_t pixels = std::size_t{640} * 480;
-constexpr std::size_t rows = std::size_t{640} * 20;
+constexpr std::size_t lost_rows = std::size_t{640} * 20;
 
 /// A simulated sensor whose frames lose some rows on the way.
 class LossySensor final : public WrappedSensor {
@@ -26,7 +26,7 @@ class LossySensor final : public WrappedSensor {
   std::optional<TimedFrame> read(const std::stop_token& stop) override {
     std::optional<TimedFrame> timed = WrappedSensor::read(stop);
     timed->time = std::chrono::steady_clock::now();  // none is from before the platform stood
-    timed->lost.resize(rows);
+    timed->lost.resize(lost_rows);
     std::iota(timed->lost.begin(), timed->lost.end(), first_(frames_++));
     for (const std::size_t pixel : timed->lost) {
       timed->frame.depth[pixel] = 0;
@@ -66,7 +66,7 @@ DepthFrame whole_image() {
 
 constexpr std::size_t middle = pixels / 2;
 std::size_t each_elsewhere(int frame) {
-  return middle + rows * static_cast<std::size_t>(frame % 3);
+  return middle + lost_rows * static_cast<std::size_t>(frame % 3);
 }
 std::size_t always_there(int /*frame*/) { return middle; }
 
@@ -88,7 +88,7 @@ TEST(TakeDepthImage, TakesMoreFramesForPixelsThatAllHaveLost) {
 TEST(TakeDepthImage, TakesTenMoreAtMost) {
   const Taken taken = take_lossy(DepthFilter::average, always_there);
   EXPECT_EQ(taken.frames, 13);
-  const auto lost = std::span(taken.image.depth).subspan(middle, rows);
+  const auto lost = std::span(taken.image.depth).subspan(middle, lost_rows);
   EXPECT_TRUE(std::ranges::all_of(lost, [](std::uint16_t depth) { return depth == 0; }));
 }
 

@@ -20,10 +20,10 @@ using Eigen::AlignedBox3d;
 using Eigen::Vector3d;
 using nlohmann::json;
 
-constexpr int stops = 8;
+constexpr int verdict_stops = 8;
 
 /// The frames of all stops, with half a real sensor's noise, as four averaged frames have.
-using Seen = std::array<DepthFrame, stops>;
+using Seen = std::array<DepthFrame, verdict_stops>;
 
 /// @param misalignment  deviation from the told pose, as a multiple of 5 mm and 1 degree
 Seen seen(std::vector<AlignedBox3d> boxes, double misalignment = 0) {
@@ -38,10 +38,10 @@ Seen seen(std::vector<AlignedBox3d> boxes, double misalignment = 0) {
   simulation.misalignment = misalignment;
   const auto sensor = open_sensor(simulation_uri(simulation));
   Seen frames;
-  for (int stop = 0; stop < stops; ++stop) {
+  for (int stop = 0; stop < verdict_stops; ++stop) {
     // 0.6 radians askew, so that no wall faces the sensor.
     frames[static_cast<std::size_t>(stop)] =
-        frame_at(*sensor, 2 * std::numbers::pi * stop / stops + 0.6).frame;
+        frame_at(*sensor, 2 * std::numbers::pi * stop / verdict_stops + 0.6).frame;
   }
   return frames;
 }
@@ -75,9 +75,10 @@ class SensorOfLooks final : public DepthSensor {
   std::optional<Tilt> tilt() const override { return std::nullopt; }
   std::optional<PacketCounts> packet_counts() const override { return std::nullopt; }
   void show_angle(double angle) override {
-    const double stop = angle * stops / (2 * std::numbers::pi);
+    const double stop = angle * verdict_stops / (2 * std::numbers::pi);
     const double nearest = std::round(stop);
-    if (std::abs(stop - nearest) < 0.01 && static_cast<int>(nearest) % stops != look_ % stops) {
+    if (std::abs(stop - nearest) < 0.01 &&
+        static_cast<int>(nearest) % verdict_stops != look_ % verdict_stops) {
       ++look_;  // the platform reached another stop
     }
   }
@@ -106,14 +107,14 @@ class VerdictTest : public ScannerTest {
       return std::make_unique<SensorOfLooks>(see);
     };
     Scanner scanner({.speed = 1000, .open_sensor = open}, {}, store_);
-    ScanSettings settings = few_snapshots(stops);
+    ScanSettings settings = few_snapshots(verdict_stops);
     settings.frames = 1;
     settings.clip = clip;
     return to_json(scan(scanner, settings));
   }
 
   static DepthFrame at(const Seen& frames, int look) {
-    return frames[static_cast<std::size_t>(look % stops)];
+    return frames[static_cast<std::size_t>(look % verdict_stops)];
   }
 };
 
@@ -155,8 +156,8 @@ TEST_F(VerdictTest, IsTheErrorOfAScanOfAnEmptyPlatform) {
 
 TEST_F(VerdictTest, SaysThatTheRigWasBumpedInMidScan) {
   const Seen bumped = seen(object(), 0.9);  // 0.9 degrees; the platform's centre sinks by 1.8 mm
-  const json scan =
-      scan_of([&](int look) { return at(look < stops / 2 ? object_seen() : bumped, look); });
+  const json scan = scan_of(
+      [&](int look) { return at(look < verdict_stops / 2 ? object_seen() : bumped, look); });
   EXPECT_NE(scan["model"]["quality"]["verdict"], "good") << scan;
   const auto moved = reasons(scan, "moved");
   ASSERT_EQ(moved.size(), 1U) << scan;
@@ -170,8 +171,8 @@ TEST_F(VerdictTest, SaysThatTheRigWasBumpedInMidScan) {
 
 TEST_F(VerdictTest, SolvesNoPoseWhereTheRigWasBumpedByACentimetre) {
   const Seen bumped = seen(object(), 2);
-  const json scan =
-      scan_of([&](int look) { return at(look < stops / 2 ? object_seen() : bumped, look); });
+  const json scan = scan_of(
+      [&](int look) { return at(look < verdict_stops / 2 ? object_seen() : bumped, look); });
   EXPECT_NE(scan["model"]["quality"]["verdict"], "good") << scan;
   ASSERT_EQ(reasons(scan, "moved").size(), 1U) << scan;
   EXPECT_EQ(scan["calibration"]["accepted"], false) << scan;

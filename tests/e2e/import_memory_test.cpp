@@ -15,7 +15,7 @@
 namespace octurn {
 namespace {
 
-constexpr std::size_t mb = std::size_t{1} << 20U;
+constexpr std::size_t mib = std::size_t{1} << 20U;
 
 /// `[[],[],...]`, of that many bytes.
 std::string empty_arrays(std::size_t bytes) {
@@ -49,7 +49,7 @@ std::string sensor_map(int width, int height) {
 /// Archives that took a gigabyte, or would take all that the limits allow.
 std::vector<std::string> large_archives() {
   std::vector<std::vector<ArchivedFile>> all;
-  all.push_back({{"scan.json", R"({"snapshots": )" + empty_arrays(15 * mb) + "}"}});
+  all.push_back({{"scan.json", R"({"snapshots": )" + empty_arrays(15 * mib) + "}"}});
   all.push_back({{"scan.json", R"({"snapshots": )" + empty_arrays(600'000) + "}"}});
   all.push_back(scan_files_of(1, 8192, 8192));
   all.push_back(refused_at_last(4096, 3072));
@@ -82,13 +82,13 @@ TEST(Memory, OfAnImportIsBounded) {
   };
   for (const std::string& archive : archives) {
     import(archive);
-    EXPECT_LT(daemon.peak_memory(), before + 100 * mb) << archive.size();
+    EXPECT_LT(daemon.peak_memory(), before + 100 * mib) << archive.size();
     std::vector<std::jthread> others;
     for (int i = 0; i < 3; ++i) {
       others.emplace_back([&] { import(archive); });
     }
   }
-  EXPECT_LT(daemon.peak_memory(), before + 100 * mb);
+  EXPECT_LT(daemon.peak_memory(), before + 100 * mib);
 }
 
 }  // namespace

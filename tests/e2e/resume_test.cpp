@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-const std::string settings = R"({"snapshots": 4, "frames": 2, "leaf_size_mm": 4})";
+const std::string resumed_settings = R"({"snapshots": 4, "frames": 2, "leaf_size_mm": 4})";
 
 /// A sensor without noise, whose frames depend on the stop only.
 const std::vector<std::string> without_noise{"--sensor", "octurn-simulator://?noise=0&speed=20"};
@@ -22,7 +22,7 @@ const std::vector<std::string> without_noise{"--sensor", "octurn-simulator://?no
 std::string undisturbed_model() {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path(), without_noise);
-  EXPECT_EQ(daemon.wait_until_done(daemon.start(settings))["state"], "finished");
+  EXPECT_EQ(daemon.wait_until_done(daemon.start(resumed_settings))["state"], "finished");
   return daemon.get("/Scan.stl").body;
 }
 
@@ -33,7 +33,7 @@ class KilledDaemon : public ::testing::TestWithParam<int> {
   static std::string killed_scan(const fs::path& folder, int snapshots) {
     for (;;) {
       Daemon daemon(folder, without_noise);
-      const std::string scan = daemon.start(settings);
+      const std::string scan = daemon.start(resumed_settings);
       daemon.wait_until(scan, [&](const json& now) {
         return now["snapshots_done"] >= snapshots || now["state"] != "running";
       });

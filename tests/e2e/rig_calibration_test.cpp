@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* calibration = "/api/v1/calibration";
+constexpr const char* calibration_path = "/api/v1/calibration";
 
 /// The distance between a pose's sensor position and the true one, millimetres.
 double off_mm(const json& rows) {
@@ -36,14 +36,14 @@ std::vector<std::string> wrongly_told(const TemporaryFolder& folder) {
   return {"--config", file};
 }
 
-json get(const Daemon& daemon) { return parsed(daemon.get(calibration)); }
+json get(const Daemon& daemon) { return parsed(daemon.get(calibration_path)); }
 
 Reply patch(const Daemon& daemon, const json& body) {
-  return request(daemon.port(), "PATCH", calibration, body.dump());
+  return request(daemon.port(), "PATCH", calibration_path, body.dump());
 }
 
 json wait_until_measured(const Daemon& daemon) {
-  return daemon.wait_until(calibration,
+  return daemon.wait_until(calibration_path,
                            [](const json& now) { return now["run"]["state"] != "running"; });
 }
 
@@ -84,7 +84,7 @@ TEST(RigCalibration, IsSetByHandAndTakenBackAndKept) {
   EXPECT_EQ(get(daemon)["scale"], 1.01);
   ASSERT_EQ(get(daemon)["history"].size(), 1U);
   EXPECT_EQ(get(daemon)["history"][0]["source"], "page");
-  EXPECT_EQ(daemon.post(std::string(calibration) + "/undo", "").status, 200);
+  EXPECT_EQ(daemon.post(std::string(calibration_path) + "/undo", "").status, 200);
   EXPECT_EQ(get(daemon)["scale"], 1.0);
   EXPECT_EQ(get(daemon)["platform_from_sensor"], to_rows(nominal_platform_from_sensor()));
   EXPECT_EQ(patch(daemon, {{"platform_from_sensor", nullptr}}).status, 200);
@@ -95,7 +95,7 @@ TEST(RigCalibration, IsSetByHandAndTakenBackAndKept) {
 TEST(RigCalibration, IsMeasuredWithATurnThatTheNextScanUses) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path(), wrongly_told(folder));
-  const Reply begun = daemon.post(calibration, R"({"kind": "turn", "stops": 12})");
+  const Reply begun = daemon.post(calibration_path, R"({"kind": "turn", "stops": 12})");
   EXPECT_EQ(begun.status, 202) << begun.body;
   EXPECT_EQ(parsed(begun)["run"]["state"], "running");
   EXPECT_EQ(parsed(begun)["run"]["stops"], 12);
@@ -131,12 +131,12 @@ TEST(RigCalibration, IsThatOfTheLastScanThatSolvedItsOwn) {
 TEST(RigCalibration, StaysAsItIsWhenTheTurnIsCancelled) {
   const TemporaryFolder folder;
   const Daemon daemon(folder.path(), {"--simulate-speed", "1"});  // the turn takes 40 s
-  const std::string cancel = std::string(calibration) + "/cancel";
+  const std::string cancel = std::string(calibration_path) + "/cancel";
   EXPECT_EQ(parsed(daemon.post(cancel, ""))["code"], "not-running");
-  EXPECT_EQ(daemon.post(calibration, R"({"kind": "turn", "stops": 72})").status, 202);
-  for (const char* const path : {calibration, "/api/v1/scans"}) {
+  EXPECT_EQ(daemon.post(calibration_path, R"({"kind": "turn", "stops": 72})").status, 202);
+  for (const char* const path : {calibration_path, "/api/v1/scans"}) {
     const Reply second =
-        daemon.post(path, path == calibration ? R"({"kind": "turn"})" : R"({"snapshots": 3})");
+        daemon.post(path, path == calibration_path ? R"({"kind": "turn"})" : R"({"snapshots": 3})");
     EXPECT_EQ(second.status, 409) << path;
     EXPECT_EQ(parsed(second)["code"], "busy");
   }
@@ -152,7 +152,7 @@ TEST(RigCalibration, RefusesABodyThatIsNone) {
   for (const char* const body :
        {"{}", R"({"kind": "dance"})", R"({"kind": "turn", "stops": 3})",
         R"({"kind": "turn", "stops": 73})", R"({"kind": "turn", "a": 1})"}) {
-    EXPECT_EQ(daemon.post(calibration, body).status, 400) << body;
+    EXPECT_EQ(daemon.post(calibration_path, body).status, 400) << body;
   }
   EXPECT_EQ(get(daemon)["run"], nullptr);
 }

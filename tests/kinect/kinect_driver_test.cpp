@@ -88,21 +88,21 @@ TEST(KinectDriver, DropsNoFrameOfTheSensors) {
     index = frame.getFrameIndex();
     const auto* depths = static_cast<const std::uint16_t*>(frame.getData());
     // Successive readings differ by 15 units of 0.1 mm.
-    ASSERT_NEAR(depths[pixels / 2], depth_of(600 + (index - 1) % different), 2) << index;
+    ASSERT_NEAR(depths[frame_pixels / 2], depth_of(600 + (index - 1) % different), 2) << index;
   }
   stream.destroy();
   device.close();
 }
 
 TEST(KinectDriver, ConvertsEveryReading) {
-  Readings all(pixels);
-  for (std::size_t i = 0; i < pixels; ++i) {
+  Readings all(frame_pixels);
+  for (std::size_t i = 0; i < frame_pixels; ++i) {
     all[i] = static_cast<std::uint16_t>(i % 2048);
   }
   const KinectOnDesk desk({all});
   const auto sensor = open_sensor("kinect://");
   const DepthFrame frame = next_frame(*sensor);
-  for (std::size_t i = 0; i < pixels; ++i) {
+  for (std::size_t i = 0; i < frame_pixels; ++i) {
     const auto reading = static_cast<int>(i % 2048);
     const double depth = depth_of(reading);
     if (reading < 1036) {  // up to 6.47 m, where a unit in the constants' last digit makes 0.1 mm
@@ -196,7 +196,7 @@ TEST(KinectDriver, TakesAKinectForWindowsInNearModeWithoutTilt) {
 
 /// Recovers the readings from a real Kinect's depths, which are truncated to whole millimetres.
 Readings readings_from_mm(std::span<const std::uint16_t> depths_mm) {
-  Readings readings(pixels, 2047);
+  Readings readings(frame_pixels, 2047);
   std::ranges::transform(depths_mm, readings.begin(), [](std::uint16_t depth_mm) {
     return static_cast<std::uint16_t>(std::ceil(1089.408 - 345489.4 / depth_mm - 0.02));
   });

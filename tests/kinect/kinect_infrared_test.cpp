@@ -81,7 +81,7 @@ std::span<const std::uint8_t> greys_of(const openni::VideoFrameRef& frame) {
 /// Expects one of the camera's pictures, but for lost pixels. @return their number
 std::size_t lost_pixels(const openni::VideoFrameRef& frame) {
   const std::span<const std::uint8_t> greys = greys_of(frame);
-  EXPECT_EQ(greys.size(), pixels);
+  EXPECT_EQ(greys.size(), frame_pixels);
   std::size_t lost = 0;
   std::vector<int> wrong(different);
   for (std::size_t i = 0; i < greys.size(); ++i) {
@@ -123,7 +123,7 @@ class KinectInfrared : public ::testing::Test {
       }
       lost += lost_pixels(*frame);
     }
-    return static_cast<double>(lost) / static_cast<double>(pixels) / frames;
+    return static_cast<double>(lost) / static_cast<double>(frame_pixels) / frames;
   }
 
   KinectOnDesk desk_{plain_frames(2), pictures()};
@@ -172,7 +172,7 @@ TEST_F(KinectInfrared, TakesBlackForNoLoss) {
   ASSERT_EQ(stream.start(), openni::STATUS_OK);
   const auto frame = stream.next();
   ASSERT_TRUE(frame);
-  EXPECT_EQ(std::ranges::count(greys_of(*frame), 1), static_cast<std::ptrdiff_t>(pixels));
+  EXPECT_EQ(std::ranges::count(greys_of(*frame), 1), static_cast<std::ptrdiff_t>(frame_pixels));
 }
 
 TEST_F(KinectInfrared, ShowsWhichPixelsWereLost) {
@@ -191,7 +191,7 @@ TEST_F(KinectInfrared, DropsPicturesOfWhichMoreThanAFifthIsLost) {
   desk_->random_loss = 0;
   const auto frame = stream.next();
   ASSERT_TRUE(frame);
-  EXPECT_LT(lost_pixels(*frame), pixels / 5);
+  EXPECT_LT(lost_pixels(*frame), frame_pixels / 5);
 }
 
 TEST_F(KinectInfrared, StartsAfterAStallAndGoesOnAfterASilence) {

@@ -36,7 +36,8 @@ std::vector<std::size_t> lost_pixels(const Loss& loss) {
     const TimedFrame timed = sensor->read({}).value();
     const auto depth = std::ranges::max(timed.frame.depth);
     const auto readings = std::ranges::count(timed.frame.depth, depth);
-    EXPECT_EQ(static_cast<std::size_t>(readings) + timed.lost.size(), pixels) << "frame " << i;
+    EXPECT_EQ(static_cast<std::size_t>(readings) + timed.lost.size(), frame_pixels)
+        << "frame " << i;
     const auto reading = static_cast<int>(std::lround(1089.40 - 3454890.0 / depth));
     if (reading % 3 == 0) {
       lost.push_back(timed.lost.size());

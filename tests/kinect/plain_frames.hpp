@@ -9,9 +9,9 @@
 
 namespace octurn {
 
-inline constexpr std::size_t pixels = std::size_t{640} * 480;
+inline constexpr std::size_t frame_pixels = std::size_t{640} * 480;
 
-inline Readings frame_of(std::uint16_t reading) { return Readings(pixels, reading); }
+inline Readings frame_of(std::uint16_t reading) { return Readings(frame_pixels, reading); }
 
 /// Distinguishable frames: each consists of a single reading of its own.
 inline std::vector<Readings> plain_frames(int count) {

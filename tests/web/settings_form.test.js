@@ -71,7 +71,7 @@ test('a turn has the steps of motor, driver and gear', () => {
 
 test('what waits for a restart says for how long', () => {
   assert.equal(restartText([], false), '');
-  assert.match(restartText(['port'], false), /starts again/);
+  assert.match(restartText(['port'], false), /restarts/);
   assert.match(restartText(['port'], true), /when the scan has ended/);
 });
 

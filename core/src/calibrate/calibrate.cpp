@@ -43,9 +43,9 @@ constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 t
 constexpr double may_worsen = 1.02;
 // With few stops each reading is compared with few others, and a pose that fits these may be worse
 // for all else: it must also fit a stop that had no part in it.
-constexpr std::size_t few_stops = 12;
+constexpr std::size_t few_stops = 7;
 // The share by which that stop's residuals must be smaller than with the configured pose, times the
-// number of stops: half of them with four stops, a quarter with eight.
+// number of stops: half of them with four stops, a third with six.
 constexpr double gain_times_stops = 2;
 constexpr double max_shift = 0.040;  // metres
 constexpr double max_tilt_deg = 6;

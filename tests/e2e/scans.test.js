@@ -196,9 +196,9 @@ async function keepPlace(page) {
   await becomes(page, () => scrollY === 300);
   await page.setViewportSize({width: 1280, height: 860});
   await page.getByLabel('Search the scans').fill('found by nobody');
-  await page.getByText('No scan has that in its name or date.').waitFor();
+  await page.getByText('No scan has that in its name, date, number or tags.').waitFor();
   await page.reload();
-  await page.getByText('No scan has that in its name or date.').waitFor();
+  await page.getByText('No scan has that in its name, date, number or tags.').waitFor();
   assert.equal(await page.getByLabel('Search the scans').inputValue(), 'found by nobody');
   await page.getByLabel('Search the scans').fill('');
 }

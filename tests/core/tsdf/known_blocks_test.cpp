@@ -8,8 +8,8 @@
 namespace octurn {
 namespace {
 
-constexpr int side = 60;       // of the block_grid, blocks
-constexpr double radius = 16;  // of the observed half of a sphere, blocks
+constexpr int side = 60;            // of the block_grid, blocks
+constexpr double ball_radius = 16;  // of the observed half of a sphere, blocks
 constexpr int middle = side / 2;
 
 const VoxelGrid block_grid(0.256, 8, {.min = {-0.1, -0.1, 0}, .max = {0.1, 0.1, 0.2}}, 0.003);
@@ -38,7 +38,7 @@ KnownBlocks half_a_sphere() {
   blocks.distances.values.resize(blocks.distances.index(0, 0, side));
   blocks.distances.known.resize(blocks.distances.values.size());
   for_each(blocks, [&](int x, int y, int z, std::size_t index) {
-    if (x <= middle && std::abs(distance(x, y, z) - radius) < 0.8) {
+    if (x <= middle && std::abs(distance(x, y, z) - ball_radius) < 0.8) {
       blocks.distances.known[index] = 1;
     }
   });
@@ -57,9 +57,9 @@ TEST(LimitBulges, MakesFreeWhatLiesOutsideTheHullOfWhatWasObserved) {
     freed += is_freed ? 1 : 0;
     if (before.distances.known[index] != 0) {
       EXPECT_EQ(after.distances.values[index], 0) << "observed, and changed";
-    } else if (x <= middle && distance(x, y, z) < radius) {
+    } else if (x <= middle && distance(x, y, z) < ball_radius) {
       EXPECT_FALSE(is_freed) << "inside: " << x << " " << y << " " << z;
-    } else if (x > middle + reach + 1 || distance(x, y, z) > 1.2 * radius + reach + 1) {
+    } else if (x > middle + reach + 1 || distance(x, y, z) > 1.2 * ball_radius + reach + 1) {
       // The hull of 26 planes is up to 12 % wider than a sphere.
       EXPECT_TRUE(is_freed) << "outside: " << x << " " << y << " " << z;
       EXPECT_GT(after.distances.values[index], 0);

@@ -25,6 +25,9 @@ export function typeText(schema) {
   if (schema.oneOf) {
     return schema.oneOf.map(typeText).join(' or ');
   }
+  if (schema.allOf) {
+    return schema.allOf.map(typeText).join(' and ');
+  }
   if (schema.enum) {
     return schema.enum.map((/** @type {any} */ value) => JSON.stringify(value)).join(' | ');
   }

@@ -8,6 +8,7 @@ const scan = {$ref: '#/components/schemas/Scan'};
 test('a type is told in words', () => {
   assert.equal(typeText(scan), 'Scan');
   assert.equal(typeText({oneOf: [scan, {type: 'null'}]}), 'Scan or null');
+  assert.equal(typeText({allOf: [scan, scan]}), 'Scan and Scan');
   assert.equal(typeText({type: ['string', 'null']}), 'string or null');
   assert.equal(typeText({type: 'array', items: scan}), 'list of Scan');
   assert.equal(typeText({enum: ['ok', 'fault']}), '"ok" | "fault"');

@@ -1,7 +1,7 @@
 // The deviations of a model from a reference: distances, figures, a histogram and colours. Pure.
 
 import {Surface} from './nearest.js';
-import {rings} from './normals.js';
+import {faceNormals, lengthsOf, rings} from './normals.js';
 import {moved, register} from './registration.js';
 
 /** @typedef {import('./stl.js').Mesh} Mesh */
@@ -24,12 +24,9 @@ const inside = [[70, 180, 200], [54, 118, 214], [70, 50, 170]];  // too little
 /** The area that belongs to each corner; 0 for what was filled in. @param {Mesh} mesh */
 function weightsOf({positions: p, filled}) {
   const weights = new Float32Array(p.length / 3);
-  for (let t = 0, corner = 0; t < p.length; t += 9, corner += 3) {
-    const [ax, ay, az] = [p[t + 3] - p[t], p[t + 4] - p[t + 1], p[t + 5] - p[t + 2]];
-    const [bx, by, bz] = [p[t + 6] - p[t], p[t + 7] - p[t + 1], p[t + 8] - p[t + 2]];
-    const area = Math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx) / 2;
-    weights.fill(filled?.[corner] ? 0 : area / 3, corner, corner + 3);
-  }
+  lengthsOf(faceNormals(p)).forEach((length, i) => {
+    weights.fill(filled?.[3 * i] ? 0 : length / 6, 3 * i, 3 * i + 3);
+  });
   return weights;
 }
 

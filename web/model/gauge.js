@@ -1,6 +1,8 @@
 // The sizes of a model of a block or of a ball, as calipers would measure them: between its faces, not to the outermost of its
 // noise. Pure; millimetres.
 
+import {faceNormals, lengthsOf} from './normals.js';
+
 /** @typedef {{area: number, normal: number[], middle: number[]}} Facet */
 
 const aligned = Math.cos(20 * Math.PI / 180);  // normals of a face, against its own
@@ -11,18 +13,14 @@ const foot = 3;  // mm; unseen above the platform
 
 /** Those above the foot that a scan has seen. @param {import('./stl.js').Mesh} mesh @returns {Facet[]} */
 function facetsOf({positions, filled}) {
+  const normals = faceNormals(positions);
   const facets = [];
-  for (let at = 0; at < positions.length; at += 9) {
-    const [x, y, z] = [0, 1, 2].map((axis) => [0, 3, 6].map((corner) => positions[at + corner + axis]));
-    const [ux, uy, uz] = [x, y, z].map(([a, b]) => b - a);
-    const [vx, vy, vz] = [x, y, z].map(([a, , c]) => c - a);
-    const cross = [uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx];
-    const length = Math.hypot(...cross);
-    const middle = [x, y, z].map(([a, b, c]) => (a + b + c) / 3);
-    if (length > 0 && middle[2] > foot && !filled?.[at / 3]) {
-      facets.push({area: length / 2, normal: cross.map((part) => part / length), middle});
+  lengthsOf(normals).forEach((length, i) => {
+    const middle = [0, 1, 2].map((axis) => [0, 3, 6].reduce((sum, corner) => sum + positions[9 * i + corner + axis], 0) / 3);
+    if (length > 0 && middle[2] > foot && !filled?.[3 * i]) {
+      facets.push({area: length / 2, normal: [0, 1, 2].map((axis) => normals[3 * i + axis] / length), middle});
     }
-  }
+  });
   return facets;
 }
 
@@ -46,7 +44,8 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 function blockOf(facets) {
   // Normals of the sides are multiples of a right angle apart: four times their angle is one angle.
   const walls = facets.filter(({normal}) => Math.abs(normal[2]) < 0.3);
-  const [sin, cos] = [Math.sin, Math.cos].map((part) => walls.reduce((sum, {area, normal}) => sum + area * part(4 * Math.atan2(normal[1], normal[0])), 0));
+  const [sin, cos] = [Math.sin, Math.cos].map((part) =>
+    walls.reduce((sum, {area, normal}) => sum + area * part(4 * Math.atan2(normal[1], normal[0])), 0));
   const turn = Math.atan2(sin, cos) / 4;
   const along = [Math.cos(turn), Math.sin(turn), 0];
   const across = [-along[1], along[0], 0];
@@ -66,7 +65,8 @@ function blockOf(facets) {
 function ballOf(facets) {
   // Towards the centre from each place: a surface of a ball with radius r has it at middle - r normal. Least squares.
   const total = areaOf(facets);
-  const mean = (/** @type {(facet: Facet) => number} */ of) => facets.reduce((sum, facet) => sum + facet.area * of(facet), 0) / total;
+  const mean = (/** @type {(facet: Facet) => number} */ of) =>
+    facets.reduce((sum, facet) => sum + facet.area * of(facet), 0) / total;
   const middle = [0, 1, 2].map((axis) => mean((facet) => facet.middle[axis]));
   const normal = [0, 1, 2].map((axis) => mean((facet) => facet.normal[axis]));
   const radius = (mean((facet) => dot(facet.middle, facet.normal)) - dot(middle, normal)) / (1 - dot(normal, normal));

@@ -1,5 +1,7 @@
 // Finds the nearest point of a surface, in a grid of its triangles. Pure.
 
+import {faceNormals, lengthsOf} from './normals.js';
+
 const maxCells = 200_000;
 const trianglesInCell = 2;  // on average, if they were spread over all cells; a surface fills a small part of them
 const sameDistance = 1e-9;  // square millimetres: nearest points on several triangles are the same corner or edge
@@ -75,17 +77,9 @@ export class Surface {
   constructor({positions, min, max}) {
     this.#positions = positions;
     const count = positions.length / 9;
-    this.#normals = new Float32Array(3 * count);
-    for (let i = 0, t = 0; i < count; ++i, t += 9) {
-      const p = positions;
-      const [ax, ay, az] = [p[t + 3] - p[t], p[t + 4] - p[t + 1], p[t + 5] - p[t + 2]];
-      const [bx, by, bz] = [p[t + 6] - p[t], p[t + 7] - p[t + 1], p[t + 8] - p[t + 2]];
-      const normal = [ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx];
-      const length = Math.hypot(...normal) || 1;
-      normal.forEach((value, axis) => {
-        this.#normals[3 * i + axis] = value / length;
-      });
-    }
+    const faces = faceNormals(positions);
+    const lengths = lengthsOf(faces);
+    this.#normals = faces.map((part, i) => part / (lengths[Math.floor(i / 3)] || 1));
     const sides = max.map((value, axis) => Math.max(value - min[axis], 1e-3));
     const cells = Math.min(maxCells, Math.max(1, count / trianglesInCell) * 4);
     this.#cell = Math.cbrt(sides[0] * sides[1] * sides[2] / cells);
@@ -115,7 +109,10 @@ export class Surface {
     return Math.min(Math.max(Math.floor((value - this.#min[axis]) / this.#cell), 0), this.#counts[axis] - 1);
   }
 
-  /** Calls back for the cells of a triangle's box that its plane may cross. @param {number} i @param {(cell: number) => void} use */
+  /**
+   * Calls back for the cells of a triangle's box that its plane may cross.
+   * @param {number} i @param {(cell: number) => void} use
+   */
   #eachCell(i, use) {
     const p = this.#positions;
     const t = 9 * i;
@@ -138,7 +135,8 @@ export class Surface {
   }
 
   /**
-   * The nearest point of the surface. Where triangles meet, the side is told by the one that the point is most in front of or behind.
+   * The nearest point of the surface. Where triangles meet, the triangle that the point is farthest in front of or
+   * behind decides the side.
    * @param {number} x @param {number} y @param {number} z @returns {Near}
    */
   nearest(x, y, z) {

@@ -34,7 +34,7 @@ export function rings(positions) {
 }
 
 /** The normals of the triangles, three numbers each, as long as twice their areas. @param {Float32Array} p  positions */
-function faceNormals(p) {
+export function faceNormals(p) {
   const normals = new Float32Array(p.length / 3);
   for (let at = 0; at < p.length; at += 9) {
     const [ax, ay, az] = [p[at + 3] - p[at], p[at + 4] - p[at + 1], p[at + 5] - p[at + 2]];
@@ -46,6 +46,10 @@ function faceNormals(p) {
   return normals;
 }
 
+/** The lengths of vectors of three numbers each. @param {Float32Array} v */
+export const lengthsOf = (v) =>
+  Float64Array.from({length: v.length / 3}, (_, i) => Math.hypot(v[3 * i], v[3 * i + 1], v[3 * i + 2]));
+
 /**
  * The normal of each corner: the mean over the triangles at its position, weighted by area, that are no edge away.
  * @param {Float32Array} positions  nine coordinates for each triangle
@@ -54,7 +58,7 @@ function faceNormals(p) {
 export function smoothNormals(positions) {
   const next = rings(positions);
   const faces = faceNormals(positions);
-  const lengths = new Float32Array(faces.length / 3).map((_, i) => Math.hypot(faces[3 * i], faces[3 * i + 1], faces[3 * i + 2]));
+  const lengths = lengthsOf(faces);
   const normals = new Int16Array(positions.length);
   for (let corner = 0; corner < next.length; ++corner) {
     const own = Math.floor(corner / 3);

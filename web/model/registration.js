@@ -1,6 +1,8 @@
 // Finds how a surface lies on another one of nearly the same shape: principal axes first, then iterated closest points,
 // point to plane (Chen and Medioni 1992). Pure.
 
+import {faceNormals, lengthsOf} from './normals.js';
+
 /** @typedef {import('./nearest.js').Surface} Surface */
 
 /** @typedef {number[]} Transform  3 rows of a rotation and a shift: twelve numbers, by rows */
@@ -18,10 +20,11 @@ export const moved = (t, x, y, z) => [
   t[0] * x + t[1] * y + t[2] * z + t[3], t[4] * x + t[5] * y + t[6] * z + t[7], t[8] * x + t[9] * y + t[10] * z + t[11],
 ];
 
-/** The transform that does `first`, then `second`. @param {Transform} second @param {Transform} first @returns {Transform} */
+/** The transform that does `first`, then `second`. @param {Transform} second @param {Transform} first */
 function after(second, first) {
   return [0, 1, 2].flatMap((row) => [0, 1, 2, 3].map((column) =>
-    [0, 1, 2].reduce((sum, k) => sum + second[4 * row + k] * first[4 * k + column], column === 3 ? second[4 * row + 3] : 0)));
+    [0, 1, 2].reduce((sum, k) => sum + second[4 * row + k] * first[4 * k + column],
+        column === 3 ? second[4 * row + 3] : 0)));
 }
 
 /** The area-weighted middle of a surface and the matrix of its second moments about it. @param {Float32Array} p  positions */
@@ -29,11 +32,10 @@ function moments(p) {
   const middle = [0, 0, 0];
   const square = Array.from({length: 3}, () => [0, 0, 0]);
   let total = 0;
-  for (let t = 0; t < p.length; t += 9) {
-    const [a, b] = [3, 6].map((at) => [0, 1, 2].map((axis) => p[t + at + axis] - p[t + axis]));
-    const area = Math.hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]) / 2;
+  lengthsOf(faceNormals(p)).forEach((length, triangle) => {
+    const area = length / 2;
     total += area;
-    const corners = [0, 3, 6].map((at) => [0, 1, 2].map((axis) => p[t + at + axis]));
+    const corners = [0, 3, 6].map((at) => [0, 1, 2].map((axis) => p[9 * triangle + at + axis]));
     const sum = [0, 1, 2].map((axis) => corners[0][axis] + corners[1][axis] + corners[2][axis]);
     for (let i = 0; i < 3; ++i) {
       middle[i] += area * sum[i] / 3;
@@ -42,7 +44,7 @@ function moments(p) {
         square[i][j] += area * (sum[i] * sum[j] + products) / 12;
       }
     }
-  }
+  });
   const centre = middle.map((value) => value / total);
   return {centre, matrix: [0, 1, 2].map((i) => [0, 1, 2].map((j) => {
     const [row, column] = i >= j ? [i, j] : [j, i];
@@ -50,7 +52,10 @@ function moments(p) {
   }))};
 }
 
-/** The eigenvectors of a symmetric matrix, that of the largest eigenvalue first, by Jacobi's rotations. @param {number[][]} matrix */
+/**
+ * The eigenvectors of a symmetric matrix, that of the largest eigenvalue first, by Jacobi's rotations.
+ * @param {number[][]} matrix
+ */
 function axesOf(matrix) {
   const a = matrix.map((row) => [...row]);
   const v = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
@@ -76,12 +81,16 @@ const determinant = (m) => m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
   m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
 
 const orders = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+const eightSigns = [1, -1].flatMap((x) => [1, -1].flatMap((y) => [1, -1].map((z) => [x, y, z])));
 
-/** All rotations that take the axes of one surface to those of the other, in any order, and turns about the upright axis. @param {number[][]} from @param {number[][]} to */
+/**
+ * All rotations that take the axes of one surface to those of the other, in any order, and turns about the upright axis.
+ * @param {number[][]} from @param {number[][]} to
+ */
 function rotations(from, to) {
   const all = [];
   for (const order of orders) {
-    for (const signs of [[1, 1, 1], [1, 1, -1], [1, -1, 1], [1, -1, -1], [-1, 1, 1], [-1, 1, -1], [-1, -1, 1], [-1, -1, -1]]) {
+    for (const signs of eightSigns) {
       const rotation = [0, 1, 2].map((row) => [0, 1, 2].map((column) =>
         [0, 1, 2].reduce((sum, k) => sum + signs[k] * to[order[k]][row] * from[k][column], 0)));
       if (determinant(rotation) > 0) {
@@ -96,7 +105,10 @@ function rotations(from, to) {
   return all;
 }
 
-/** Solves a symmetric system by Gauss's elimination. @param {number[][]} m  with the right side as last column @returns {number[] | null} */
+/**
+ * Solves a symmetric system by Gauss's elimination.
+ * @param {number[][]} m  with the right side as last column @returns {number[] | null}
+ */
 function solved(m) {
   const n = m.length;
   for (let i = 0; i < n; ++i) {
@@ -115,7 +127,10 @@ function solved(m) {
   return m.map((row, i) => row[n] / row[i]);
 }
 
-/** A rotation by a vector, as Rodrigues's formula has it, about a point, and a shift. @param {number[]} step @param {number[]} centre @returns {Transform} */
+/**
+ * A rotation about a point by a rotation vector (Rodrigues's formula), and a shift.
+ * @param {number[]} step @param {number[]} centre @returns {Transform}
+ */
 function stepOf([rx, ry, rz, tx, ty, tz], [cx, cy, cz]) {
   const angle = Math.hypot(rx, ry, rz);
   const [x, y, z] = angle > 0 ? [rx / angle, ry / angle, rz / angle] : [1, 0, 0];
@@ -123,7 +138,8 @@ function stepOf([rx, ry, rz, tx, ty, tz], [cx, cy, cz]) {
   const d = 1 - c;
   const r = [c + x * x * d, x * y * d - z * s, x * z * d + y * s, y * x * d + z * s, c + y * y * d, y * z * d - x * s,
     z * x * d - y * s, z * y * d + x * s, c + z * z * d];
-  const shift = [tx + cx, ty + cy, tz + cz].map((value, i) => value - (r[3 * i] * cx + r[3 * i + 1] * cy + r[3 * i + 2] * cz));
+  const shift = [tx + cx, ty + cy, tz + cz].map((value, i) =>
+    value - (r[3 * i] * cx + r[3 * i + 1] * cy + r[3 * i + 2] * cz));
   return [0, 1, 2].flatMap((i) => [r[3 * i], r[3 * i + 1], r[3 * i + 2], shift[i]]);
 }
 
@@ -132,7 +148,8 @@ const median = (values) => [...values].sort((a, b) => a - b)[values.length >> 1]
 
 /**
  * Improves a transform by closest points.
- * @param {number[][]} points @param {Surface} surface @param {Transform} first @param {number} rounds @param {number} size  of the object
+ * @param {number[][]} points @param {Surface} surface @param {Transform} first
+ * @param {number} rounds  at most @param {number} size  of the object
  * @returns {{transform: Transform, error: number}}  error: median distance
  */
 function improved(points, surface, first, rounds, size) {
@@ -175,15 +192,10 @@ function improved(points, surface, first, rounds, size) {
   return {transform, error};
 }
 
-/** Points of a surface, spread evenly by area. @param {Float32Array} p  positions @param {number} count @returns {number[][]} */
+/** Points of a surface, spread evenly by area. @param {Float32Array} p  positions @param {number} count */
 function samples(p, count) {
-  const areas = new Float64Array(p.length / 9);
   let total = 0;
-  for (let i = 0, t = 0; t < p.length; ++i, t += 9) {
-    const [ax, ay, az] = [p[t + 3] - p[t], p[t + 4] - p[t + 1], p[t + 5] - p[t + 2]];
-    const [bx, by, bz] = [p[t + 6] - p[t], p[t + 7] - p[t + 1], p[t + 8] - p[t + 2]];
-    areas[i] = total += Math.hypot(ay * bz - az * by, az * bx - ax * bz, ax * by - ay * bx) / 2;
-  }
+  const areas = lengthsOf(faceNormals(p)).map((length) => total += length / 2);  // of all triangles so far
   const points = [];
   for (let n = 0, i = 0; n < count && total > 0; ++n) {
     while (areas[i] < (n + 0.5) / count * total) {
@@ -192,7 +204,8 @@ function samples(p, count) {
     const u = Math.sqrt((n * 0.754877666) % 1);  // the R2 sequence, so that each run takes the same points
     const v = (n * 0.569840291) % 1;
     const t = 9 * i;
-    points.push([0, 1, 2].map((axis) => (1 - u) * p[t + axis] + u * (1 - v) * p[t + 3 + axis] + u * v * p[t + 6 + axis]));
+    points.push([0, 1, 2].map((axis) =>
+      (1 - u) * p[t + axis] + u * (1 - v) * p[t + 3 + axis] + u * v * p[t + 6 + axis]));
   }
   return points;
 }
@@ -211,10 +224,12 @@ export function register({positions, filled}, reference, surface) {
   const to = moments(reference.positions);
   const few = samples(seen, tried.points);
   const all = rotations(axesOf(from.matrix), axesOf(to.matrix)).map((rotation) => {
-    const first = rotation.flatMap((row, i) => [...row, to.centre[i] - row.reduce((sum, value, k) => sum + value * from.centre[k], 0)]);
+    const first = rotation.flatMap((row, i) =>
+      [...row, to.centre[i] - row.reduce((sum, value, k) => sum + value * from.centre[k], 0)]);
     return improved(few, surface, first, tried.rounds, size);
   }).sort((a, b) => a.error - b.error).slice(0, finalists);
   const some = samples(seen, better.points);
-  const [best] = all.map(({transform}) => improved(some, surface, transform, better.rounds, size)).sort((a, b) => a.error - b.error);
+  const [best] = all.map(({transform}) => improved(some, surface, transform, better.rounds, size))
+      .sort((a, b) => a.error - b.error);
   return improved(samples(seen, fine.points), surface, best.transform, fine.rounds, size);
 }

@@ -6,9 +6,9 @@ import {awaitFragment} from '../base/fragment.js';
 import {text} from '../base/texts.js';
 
 /**
- * The slicers that fetch a model from any address, and the links that have them do so. Each is told in its program's source:
- * OrcaSlicer's Downloader.cpp, Bambu Studio's GUI_App.cpp (MacOpenURL has a scheme of its own), and Cura's CuraApplication.py.
- * PrusaSlicer takes models of some websites only, by https. Pure.
+ * The slicers that fetch a model from any address, and the links that have them do so. The schemes of OrcaSlicer and Bambu
+ * Studio, which has another one on macOS, are from a third party's notes on their sources, that of Cura is from the request
+ * that added it. None was tried. PrusaSlicer takes models of some websites only, by https. Pure.
  * @param {string} model  its address @param {boolean} isMac
  */
 export function slicerLinks(model, isMac) {

@@ -258,7 +258,7 @@ export const texts = {
   'share.title': 'In einem Slicer oder am Handy öffnen',
   'share.slicers': 'Slicer',
   'share.slicer': 'In {slicer} öffnen',
-  'share.untried': 'Der Slicer auf diesem Computer holt sich das 3MF vom Scanner. Diese Links sind nach dem Quelltext der Slicer gemacht und nicht erprobt. Bambu Studio fragt vorher. PrusaSlicer öffnet nur Modelle mancher Websites: dafür das 3MF herunterladen.',
+  'share.untried': 'Der Slicer auf diesem Computer holt sich das 3MF vom Scanner. Diese Links folgen Beschreibungen anderer und sind nicht erprobt. Bambu Studio fragt vorher. PrusaSlicer öffnet nur Modelle mancher Websites: dafür das 3MF herunterladen.',
   'share.password': 'Die Seite hat ein Passwort, das Slicer nicht senden können: das 3MF herunterladen und dort öffnen.',
   'share.code': 'Die Kamera eines Handys öffnet diesen Scan:',
   'share.local': 'Diese Adresse gilt nur auf diesem Computer. Unter der Adresse des Scanners im Netz geöffnet, zeigt die Seite eine, die auch ein Handy öffnet.',

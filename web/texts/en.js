@@ -289,7 +289,7 @@ export const texts = {
   'share.title': 'Open in a slicer or on a phone',
   'share.slicers': 'Slicers',
   'share.slicer': 'Open in {slicer}',
-  'share.untried': 'The slicer on this computer fetches the 3MF from the scanner. These links are made from the slicers’ source and were not tried. Bambu Studio asks first. PrusaSlicer opens models of some websites only: download the 3MF for it.',
+  'share.untried': 'The slicer on this computer fetches the 3MF from the scanner. These links follow descriptions by others and were not tried. Bambu Studio asks first. PrusaSlicer opens models of some websites only: download the 3MF for it.',
   'share.password': 'The page has a password, which slicers cannot send: download the 3MF, and open it there.',
   'share.code': 'A phone’s camera opens this scan:',
   'share.local': 'This address works on this computer only. Open the page at the scanner’s address in the network for one that a phone can open.',

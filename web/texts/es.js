@@ -258,7 +258,7 @@ export const texts = {
   'share.title': 'Abrir en un laminador o en un teléfono',
   'share.slicers': 'Laminadores',
   'share.slicer': 'Abrir en {slicer}',
-  'share.untried': 'El laminador de este ordenador descarga el 3MF del escáner. Estos enlaces siguen el código fuente de los laminadores y no se han probado. Bambu Studio pregunta antes. PrusaSlicer solo abre modelos de algunos sitios web: para él, descargar el 3MF.',
+  'share.untried': 'El laminador de este ordenador descarga el 3MF del escáner. Estos enlaces siguen descripciones de terceros y no se han probado. Bambu Studio pregunta antes. PrusaSlicer solo abre modelos de algunos sitios web: para él, descargar el 3MF.',
   'share.password': 'La página tiene una contraseña, que los laminadores no pueden enviar: descargar el 3MF y abrirlo allí.',
   'share.code': 'La cámara de un teléfono abre este escaneo:',
   'share.local': 'Esta dirección solo vale en este ordenador. Abierta en la dirección del escáner en la red, la página muestra una que un teléfono puede abrir.',

@@ -258,7 +258,7 @@ export const texts = {
   'share.title': 'Ouvrir dans un slicer ou sur un téléphone',
   'share.slicers': 'Slicers',
   'share.slicer': 'Ouvrir dans {slicer}',
-  'share.untried': 'Le slicer de cet ordinateur va chercher le 3MF sur le scanner. Ces liens sont faits d’après le code source des slicers et n’ont pas été essayés. Bambu Studio demande d’abord. PrusaSlicer n’ouvre que les modèles de certains sites : pour lui, télécharger le 3MF.',
+  'share.untried': 'Le slicer de cet ordinateur va chercher le 3MF sur le scanner. Ces liens suivent des descriptions de tiers et n’ont pas été essayés. Bambu Studio demande d’abord. PrusaSlicer n’ouvre que les modèles de certains sites : pour lui, télécharger le 3MF.',
   'share.password': 'La page a un mot de passe, que les slicers ne peuvent pas envoyer : télécharger le 3MF et l’y ouvrir.',
   'share.code': 'L’appareil photo d’un téléphone ouvre cette numérisation :',
   'share.local': 'Cette adresse ne vaut que sur cet ordinateur. Ouverte à l’adresse du scanner dans le réseau, la page en montre une qu’un téléphone peut ouvrir.',

@@ -83,8 +83,7 @@ struct BuiltModel {
 /// Builds the model of a stored scan: solves the sensor's pose, reconstructs the surface by the
 /// options' method, writes it, and judges it. A scan with free poses is made tile by tile.
 /// @throws Stopped  if stopped before the model was written
-/// @throws Error    as `solve_scan`, `make_reconstructor`, `Reconstructor::add`, and as the
-/// functions
+/// @throws Error    as `solve_scan`, `make_reconstructor`, `Reconstructor::add`, and the functions
 ///                  of the input
 BuiltModel build_model(ModelInput input, const std::stop_token& stop);
 

@@ -81,22 +81,18 @@ double mean_object_pixels(const TurnViews& views) {
   return pixels / static_cast<double>(std::max<std::size_t>(views.views.size(), 1));
 }
 
-/// Radians: by how much an uneven surface may tilt the plane that is fitted to it. 1/z is
-/// (normal / offset) . ray on the plane: an inverse depth that is off by d lifts it by d z offset.
-double plane_sigma(const SurfaceFindings& surface, const PlatformPlane& plane,
+/// Radians: sigma of the plane as a prior of the axis's direction. An uneven surface may also tilt
+/// the plane that is fitted to it. 1/z is (normal / offset) . ray on the plane: an inverse depth
+/// that is off by d lifts it by d z offset.
+/// @param even_deg  sigma of an even plane
+double plane_prior(double even_deg, const SurfaceFindings& surface, const PlatformPlane& plane,
                    const Eigen::Isometry3d& levelled) {
   const double uneven = surface.unevenness.value_or(0);
   const double beyond_noise =
       std::sqrt(std::max(uneven * uneven - max_unevenness * max_unevenness, 0.0));
   const double z = levelled.inverse().translation().z();  // of the platform's middle
-  return beyond_noise * disparity_unit * z * std::abs(plane.offset) / unevenness_lever;
-}
-
-/// Radians: sigma of the plane as a prior of the axis's direction.
-double plane_prior(const SurfaceFindings& surface, const PlatformPlane& plane,
-                   const Eigen::Isometry3d& levelled) {
-  return std::hypot(radians_from_degrees(tight_direction_deg),
-                    plane_sigma(surface, plane, levelled));
+  return std::hypot(radians_from_degrees(even_deg),
+                    beyond_noise * disparity_unit * z * std::abs(plane.offset) / unevenness_lever);
 }
 
 /// The angle between the solved axis and the plane's normal.
@@ -178,8 +174,7 @@ std::optional<AxisSolution> solve_slipped(CalibrationReport& report, TurnViews& 
 std::optional<AxisSolution> solve(CalibrationReport& report, TurnViews& views,
                                   const PlatformPlane& plane, const SurfaceFindings& surface,
                                   const Eigen::Isometry3d& levelled, int threads) {
-  const double prior =
-      std::hypot(radians_from_degrees(loose_direction_deg), plane_sigma(surface, plane, levelled));
+  const double prior = plane_prior(loose_direction_deg, surface, plane, levelled);
   auto loose = solve_axis(views, plane, find_axis_start(views, levelled, threads), prior, threads);
   if (!loose) {
     return std::nullopt;
@@ -201,7 +196,7 @@ std::optional<AxisSolution> solve(CalibrationReport& report, TurnViews& views,
     return loose;
   }
   return solve_axis(views, plane, loose->platform_from_sensor,
-                    plane_prior(surface, plane, levelled), threads);
+                    plane_prior(tight_direction_deg, surface, plane, levelled), threads);
 }
 
 /// Sets the distances of a solution from the configured pose.
@@ -437,8 +432,8 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
                            ? report.findings.front().detail
                            : refuse_solution(report, last_step);
   if (reason.empty()) {
-    reason = refuse_few_stops(report, views, plane, turn, plane_prior(surface, plane, levelled),
-                              threads);
+    reason = refuse_few_stops(report, views, plane, turn,
+                              plane_prior(tight_direction_deg, surface, plane, levelled), threads);
   }
   if (!surface.bump && (!reason.empty() || !all_stand_as_told(report) ||
                         looks_still(views, levelled, report.platform_from_sensor, threads))) {

@@ -45,8 +45,8 @@ ScanSolution solve_scan(const std::filesystem::path& folder, const Scan& scan,
       scan.laser ? calibrate_lasers(folder, scan, threads, stop)
                  : LaserCalibration{.report = solve_pose(scan, snapshots, threads)};
   CalibrationReport report = found.report;
-  if (scan.laser) {  // a share of the stops has depth images: the lines stay at the configured
-                     // angles
+  if (scan.laser) {
+    // Only some of the stops have depth images to solve the angles: all stay as configured.
     report.slipped.clear();
   }
   ScanSolution solution{

@@ -42,8 +42,8 @@ std::string session_of_nonce(const std::string& nonce) {
   return nonce.substr(2 * number_digits, number_digits);
 }
 
-// A browser shows it once it has sent a password, and tries again by itself. Files of the page are
-// not to be had without one.
+// A browser that has sent a password shows this, and tries again by itself. It is whole, as the
+// page's files need the password, too.
 constexpr const char* waiting_page = R"(<!doctype html>
 <meta charset="utf-8">
 <meta name="viewport" content="width=device-width, initial-scale=1">
@@ -168,7 +168,8 @@ std::optional<Response> Login::refusal(const LoginAttempt& attempt, Time now) {
   }
   if (session.empty() || current - period_of_nonce(proof->nonce) > 1 ||
       !is_first_use(*proof, current)) {
-    // The next proof has not to be lucky again. Each foreign nonce starts one session.
+    // The password was right: its session starts, so that the next proof need not be lucky again.
+    // Each outdated nonce starts one session only, so that repeated proofs push out no other's.
     const std::string proved =
         session.empty() ? sign(proof->nonce).substr(0, number_digits) : session;
     guesses_.remember(proved, attempt.address, now);

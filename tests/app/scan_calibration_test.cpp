@@ -130,7 +130,12 @@ TEST_F(ScanCalibrationTest, KeepsAPoseThatAnEarlierScanHasSolved) {
   EXPECT_EQ(std::vector<Phase>(phases.end() - 2, phases.end()),
             (std::vector<Phase>{Phase::calibrating, Phase::building}));
   ASSERT_TRUE(report_);
-  EXPECT_TRUE(report_->confirms_told()) << mm_from_metres(report_->shift);
+  EXPECT_TRUE(report_->confirms_told())
+      << mm_from_metres(report_->shift) << " mm aside, " << mm_from_metres(report_->lift)
+      << " mm up, with a sigma of " << mm_from_metres(report_->position_sigma) << " mm, "
+      << degrees_from_radians(report_->tilt) << " degrees tilted, with a sigma of "
+      << degrees_from_radians(report_->direction_sigma) << " degrees; other optics: "
+      << report_->optics_differ << "; " << report_->accepted << ' ' << report_->reason;
   EXPECT_FALSE(read_scan(folder_.path()).solved);
 }
 

@@ -35,9 +35,7 @@ constexpr double max_position_sigma = 0.0006;  // metres
 // A larger sigma is accepted where the correction is large: a share of how far the pose moves.
 constexpr double worthwhile_sigma = 0.05;
 constexpr double worthwhile_direction_sigma = 0.2;  // a share of how far the axis tilts
-constexpr double max_direction_sigma_deg = 0.1;
-// Wrong optics do more harm than an axis that is this uncertain: 0.35 mm at a height of 100 mm.
-constexpr double max_direction_sigma_with_optics_deg = 0.2;
+constexpr double max_direction_sigma_deg = 0.2;  // 0.35 mm at a height of 100 mm
 constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 to 0.7 mm
 // The median residual may grow by this factor: the solver minimises weighted squares instead.
 constexpr double may_worsen = 1.02;
@@ -285,8 +283,7 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
            ": stand another object on the platform";
   }
   if (report.direction_sigma >
-      std::max(radians_from_degrees(report.optics_differ ? max_direction_sigma_with_optics_deg
-                                                         : max_direction_sigma_deg),
+      std::max(radians_from_degrees(max_direction_sigma_deg),
                worthwhile_direction_sigma * report.tilt)) {
     return "the axis is uncertain by " + degrees_text(report.direction_sigma, text_digits) +
            ": stand another object on the platform";

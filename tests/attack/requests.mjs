@@ -47,7 +47,7 @@ const routes = [
   [3, 'POST', '/api/v1/scans/{id}/resume', {}], [6, 'GET', '/api/v1/scans/{id}/Scan.stl'], [4, 'GET', '/api/v1/scans/{id}/preview.stl'],
   [2, 'GET', '/api/v1/update'], [2, 'PUT', '/api/v1/update', 'bytes'], [2, 'GET', '/api/v1/wifi'], [3, 'PUT', '/api/v1/wifi', wifi],
   [2, 'PATCH', '/api/v1/settings', settings], [2, 'GET', '/api/v1/settings/backup'], [2, 'GET', '/api/v1/calibration'],
-  [1, 'POST', '/api/v1/calibration', {kind: ['turn', 'wall'], stops: [8, 24, -1], frames: [5]}],
+  [1, 'POST', '/api/v1/calibration', {kind: ['turn', 'wall'], stops: [8, 24, -1]}],
   [2, 'POST', '/api/v1/calibration/cancel', {}], [1, 'POST', '/api/v1/calibration/undo', {}],
   [1, 'PATCH', '/api/v1/calibration', {platform_from_sensor: settings.platform_from_sensor, scale: [1, 0, -1], sensor_map: [null, 1]}],
   [1, 'GET', '/api/v1/calibration/sensor-map'],

@@ -10,6 +10,7 @@
 #include "depth/pinhole.hpp"
 #include "octurn/calibrate.hpp"
 #include "octurn/units.hpp"
+#include "solve/symmetric_solver.hpp"
 
 namespace octurn {
 namespace {
@@ -177,8 +178,7 @@ void refine(PlatformPlane& plane, const std::vector<Vector3d>& points) {
     if (std::abs(distance) > refined_height) {
       continue;
     }
-    const double ratio = distance / cauchy_scale;
-    const double weight = 1 / (1 + ratio * ratio);
+    const double weight = cauchy_weight(distance, cauchy_scale);
     const Vector3d levelled = level * point;
     const Vector3d row(levelled.x(), levelled.y(), 1);
     normal_matrix += weight * row * row.transpose();

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "calibrate/object_view.hpp"
+#include "solve/symmetric_solver.hpp"
 
 namespace octurn {
 
@@ -51,10 +52,7 @@ struct ResidualLimits {
   double max_distance = 0.02;   ///< metres: beyond it lies another surface
   double cauchy_scale = 0.004;  ///< metres
 
-  double weight(double distance) const {
-    const double ratio = distance / cauchy_scale;
-    return 1 / (1 + ratio * ratio);
-  }
+  double weight(double distance) const { return cauchy_weight(distance, cauchy_scale); }
 };
 
 /// With fewer residuals of a turn nothing is solved.

@@ -8,6 +8,7 @@
 #include "depth/depth_limits.hpp"
 #include "io/radial_distortion.hpp"
 #include "octurn/median.hpp"
+#include "solve/symmetric_solver.hpp"
 
 namespace octurn {
 namespace {
@@ -106,9 +107,8 @@ WallPlane fit_wall_plane(const WallBlocks& wall) {
       if (!block.is_valid) {
         continue;
       }
-      const double off =
-          scale > 0 ? (block.inverse_depth - plane.inverse_depth(block.ray)) / scale : 0;
-      const double weight = 1 / (1 + off * off);
+      const double off = block.inverse_depth - plane.inverse_depth(block.ray);
+      const double weight = scale > 0 ? cauchy_weight(off, scale) : 1;
       const Eigen::Vector3d row(1, block.ray.x(), block.ray.y());
       matrix += weight * row * row.transpose();
       right += weight * row * block.inverse_depth;

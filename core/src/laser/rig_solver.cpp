@@ -9,6 +9,7 @@
 
 #include "laser/laser_rig.hpp"
 #include "parallel/fork_join.hpp"
+#include "solve/symmetric_solver.hpp"
 
 namespace octurn {
 namespace {
@@ -40,15 +41,9 @@ constexpr std::array scales = {0.001,  0.001,  0.0005, 0.0003, 0.0002,
 // Converged below this change of each unknown, radians and metres: a micrometre at the object.
 constexpr double at_rest = 0.000002;
 
-double cauchy_weight(double residual, double scale) {
-  const double part = residual / scale;
-  return 1 / (1 + part * part);
-}
-
 /// Weight of a pair of points from two lasers; falls off with their distance.
 double weight_of_pair(const LinePoint& p, const LinePoint& q) {
-  const double part = static_cast<double>((p.point - q.point).norm()) / crossing_reach;
-  return 1 / (1 + part * part);
+  return cauchy_weight(static_cast<double>((p.point - q.point).norm()), crossing_reach);
 }
 
 double cauchy_cost(const std::vector<float>& residuals) {

@@ -14,6 +14,7 @@
 #include "register/reading_fit.hpp"
 #include "register/rigid_fit.hpp"
 #include "register/seen_turn.hpp"
+#include "solve/symmetric_solver.hpp"
 
 namespace octurn {
 namespace {

@@ -8,6 +8,7 @@
 #include "octurn/median.hpp"
 #include "octurn/snapshot.hpp"
 #include "parallel/fork_join.hpp"
+#include "solve/symmetric_solver.hpp"
 
 namespace octurn {
 namespace {

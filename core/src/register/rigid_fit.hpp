@@ -42,10 +42,4 @@ struct RigidFit {
 /// Upper bound of the distance that a motion moves points up to 5 cm from `middle`, metres.
 double motion_length(const Eigen::Isometry3d& motion, const Eigen::Vector3d& middle);
 
-/// Cauchy weight of a residual, for iteratively reweighted least squares.
-inline double cauchy_weight(double distance, double scale) {
-  const double ratio = distance / scale;
-  return 1 / (1 + ratio * ratio);
-}
-
 }  // namespace octurn

@@ -5,6 +5,12 @@
 
 namespace octurn {
 
+/// Cauchy weight of a residual, for iteratively reweighted least squares.
+inline double cauchy_weight(double residual, double scale) {
+  const double ratio = residual / scale;
+  return 1 / (1 + ratio * ratio);
+}
+
 /// The solution of normal equations.
 struct SymmetricSolution {
   Eigen::VectorXd values = {};

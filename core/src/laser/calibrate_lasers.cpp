@@ -1,8 +1,10 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "calibrate/turn_ratio.hpp"
 #include "io/number_text.hpp"
 #include "laser/line_strip.hpp"
 #include "laser/rig_solver.hpp"
@@ -149,6 +151,22 @@ bool lasers_disagree(const RigSolution& solution, const Limits& limits) {
          disagreement(solution) > limits.disagreement;
 }
 
+/// Returns the finding of a platform that turned the other way.
+/// @param rig  as solved with the configured angles
+std::optional<CalibrationFinding> find_turn(const RigSolver& solver, const LaserRig& rig,
+                                            std::size_t stops) {
+  constexpr double min_confirmed = 0.5;    // of the points, by the reversed angles
+  constexpr double distinguishable = 0.7;  // of these, by the configured angles
+  if (rig.lasers.size() < 2) {
+    return std::nullopt;  // no place is seen at two stops
+  }
+  const double as_told = solver.confirmed_share(rig, 1);
+  const double reversed = solver.confirmed_share(rig, -1);
+  return reversed > std::max(min_confirmed, as_told / distinguishable)
+             ? find_wrong_turn({.ratio = -1, .confirmed = reversed, .as_told = as_told}, stops)
+             : std::nullopt;
+}
+
 /// Returns why a solution is refused; empty if it is accepted.
 std::string refusal(const RigSolution& solution, const CalibrationReport& report,
                     const std::vector<Laser>& configured, const Limits& limits) {
@@ -216,10 +234,15 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   compare_poses(configured.platform_from_sensor, report);
   set_sigmas(best, report);
   const Limits limits(lines.pixel());
-  if (lasers_disagree(best, limits)) {
+  report.reason = refusal(best, report, configured.lasers, limits);
+  const bool is_told_wrong =
+      lasers_disagree(best, limits) || best.surface_distances.size() < min_pairs;
+  if (auto wrong = is_told_wrong ? find_turn(solver, best.rig, scan.shots.size()) : std::nullopt) {
+    report.reason = wrong->detail;
+    report.findings.push_back(*std::move(wrong));
+  } else if (lasers_disagree(best, limits)) {
     report.findings.push_back(describe_disagreement(disagreement(best)));
   }
-  report.reason = refusal(best, report, configured.lasers, limits);
   report.accepted = report.reason.empty();
   calibration.lasers = best.rig.lasers;
   for (Laser& laser : calibration.lasers) {

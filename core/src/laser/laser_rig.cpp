@@ -96,12 +96,13 @@ std::uint64_t to_key(const Cell& cell) {
 }  // namespace
 
 LinePoints::LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser,
-                       double min_height) {
+                       double turn_ratio, double min_height) {
   const std::vector<Shot>& shots = lines.scan().shots;
   const auto placed = [&](std::size_t stop) -> PlacedLine {
     return {.profile = lines.at(stop)[laser],
             .laser = rig.lasers[laser],
-            .object_from_sensor = object_from_sensor(rig.platform_from_sensor, shots[stop].angle)};
+            .object_from_sensor =
+                object_from_sensor(rig.platform_from_sensor, turn_ratio * shots[stop].angle)};
   };
   for (std::size_t stop = 0; stop < shots.size(); ++stop) {
     const PlacedLine next = placed((stop + 1) % shots.size());

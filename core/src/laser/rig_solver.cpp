@@ -38,6 +38,8 @@ constexpr double platform_correlation = 25;
 // Cauchy scale of each iteration, metres: wide first, for a start far from the solution.
 constexpr std::array scales = {0.001,  0.001,  0.0005, 0.0003, 0.0002,
                                0.0002, 0.0002, 0.0002, 0.0002, 0.0002};
+constexpr double confirming_distance = 0.0004;  // metres, as lasers of a right rig may disagree
+
 // Converged below this change of each unknown, radians and metres: a micrometre at the object.
 constexpr double at_rest = 0.000002;
 
@@ -187,36 +189,59 @@ void RigSolver::add_platform(const LaserRig& rig, double scale, Sums& sums) cons
   }
 }
 
-void RigSolver::add_surfaces(const LaserRig& rig, double scale, Sums& sums) const {
+double RigSolver::Pair::distance() const {
+  return to.normal.cast<double>().dot((from.point - to.point).cast<double>());
+}
+
+/// Visits surface points of each laser with the nearest one of every other, if it has one near.
+/// @return number of points looked at
+std::size_t RigSolver::visit_pairs(const LaserRig& rig, double turn_ratio,
+                                   const std::function<void(const Pair&)>& visit) const {
   std::vector<LinePoints> surfaces;
   for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
-    surfaces.emplace_back(lines_, rig, laser, object_height);
+    surfaces.emplace_back(lines_, rig, laser, turn_ratio, object_height);
   }
-  const std::vector<Shot>& shots = lines_.scan().shots;
-  VectorXd row(sums.right.size());
+  std::size_t visited = 0;
   for (std::size_t from = 0; from < surfaces.size(); ++from) {
     const std::vector<LinePoint>& points = surfaces[from].all();
     const std::size_t step = std::max<std::size_t>(1, points.size() / surface_wanted);
     for (std::size_t i = 0; i < points.size(); i += step) {
+      ++visited;
       for (std::size_t to = 0; to < surfaces.size(); ++to) {
         const LinePoint& p = points[i];
         const LinePoint* q = to == from ? nullptr : surfaces[to].nearest(p.point, p.normal);
-        if (q == nullptr) {
-          continue;
+        if (q != nullptr) {
+          visit({.from = p, .to = *q, .from_laser = from, .to_laser = to});
         }
-        const Vector3d normal = q->normal.cast<double>();
-        const double residual = normal.dot((p.point - q->point).cast<double>());
-        row.setZero();
-        const auto add = [&](const LinePoint& point, std::size_t laser, double factor) {
-          const SeenPoint seen(rig, pivots_, laser, lines_.at(point.stop)[laser].rays[point.ray]);
-          seen.add_row(turned_to_stop(normal, shots[point.stop].angle), factor, row);
-        };
-        add(p, from, 1);
-        add(*q, to, -1);
-        sums.add(row, residual, cauchy_weight(residual, scale) * weight_of_pair(p, *q));
       }
     }
   }
+  return visited;
+}
+
+void RigSolver::add_surfaces(const LaserRig& rig, double scale, Sums& sums) const {
+  const std::vector<Shot>& shots = lines_.scan().shots;
+  VectorXd row(sums.right.size());
+  visit_pairs(rig, 1, [&](const Pair& pair) {
+    const Vector3d normal = pair.to.normal.cast<double>();
+    const double residual = pair.distance();
+    row.setZero();
+    const auto add = [&](const LinePoint& point, std::size_t laser, double factor) {
+      const SeenPoint seen(rig, pivots_, laser, lines_.at(point.stop)[laser].rays[point.ray]);
+      seen.add_row(turned_to_stop(normal, shots[point.stop].angle), factor, row);
+    };
+    add(pair.from, pair.from_laser, 1);
+    add(pair.to, pair.to_laser, -1);
+    sums.add(row, residual, cauchy_weight(residual, scale) * weight_of_pair(pair.from, pair.to));
+  });
+}
+
+double RigSolver::confirmed_share(const LaserRig& rig, double turn_ratio) const {
+  double confirmed = 0;
+  const std::size_t points = visit_pairs(rig, turn_ratio, [&](const Pair& pair) {
+    confirmed += std::abs(pair.distance()) < confirming_distance ? 1 : 0;
+  });
+  return confirmed / static_cast<double>(std::max<std::size_t>(points, 1));
 }
 
 /// The normal equations of a rig, scaled by the residuals' inverse variance.

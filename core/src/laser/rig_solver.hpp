@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <functional>
 #include <stop_token>
 #include <vector>
 
@@ -46,6 +47,10 @@ class RigSolver {
   /// Evaluates the configured rig.
   RigSolution as_told() const;
 
+  /// Returns the share of the surface points that another laser confirms, had the platform turned
+  /// by `turn_ratio` times the configured angles.
+  double confirmed_share(const LaserRig& rig, double turn_ratio) const;
+
   /// The number of points on the platform.
   std::size_t platform_points() const { return platform_.size(); }
 
@@ -61,6 +66,20 @@ class RigSolver {
   };
   struct Sums;
   struct Equations;
+
+  /// Points of two lasers near each other.
+  struct Pair {
+    const LinePoint& from;
+    const LinePoint& to;
+    std::size_t from_laser = 0;
+    std::size_t to_laser = 0;
+
+    /// The distance of `from` from the surface at `to`, metres.
+    double distance() const;
+  };
+
+  std::size_t visit_pairs(const LaserRig& rig, double turn_ratio,
+                          const std::function<void(const Pair&)>& visit) const;
 
   Equations linearise(const LaserRig& rig, double scale, RigSolution& solution) const;
   std::vector<Reading> read_all();

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "core/laser/lit_scene.hpp"
 #include "octurn/calibrate.hpp"
@@ -150,6 +151,25 @@ TEST(CalibrateLasers, ReadsAtMostAHundredStops) {
 
   ASSERT_TRUE(found.report.accepted) << found.report.reason;
   EXPECT_EQ(found.lasers[0].normal, calibrate_lasers(folder.path(), half, 1).lasers[0].normal);
+}
+
+TEST(CalibrateLasers, NamesAPlatformThatTurnedTheOtherWay) {
+  Scan told = Turn::of_two_balls().truth();
+  for (Shot& shot : told.shots) {
+    shot.angle = -shot.angle;
+  }
+
+  const LaserCalibration found = Turn::of_two_balls().solve(told);
+
+  EXPECT_FALSE(found.report.accepted);
+  ASSERT_EQ(found.report.findings.size(), 1U);
+  EXPECT_EQ(found.report.findings[0].code, "turn-ratio");
+  EXPECT_NE(found.report.reason.find("90 degrees clockwise"), std::string::npos)
+      << found.report.reason;
+}
+
+TEST(CalibrateLasers, NamesNoOtherWayOfAPlatformThatTurnedAsItShould) {
+  EXPECT_TRUE(Turn::of_two_balls().solve(Turn::of_two_balls().truth()).report.findings.empty());
 }
 
 TEST(CalibrateLasers, IsTheSameForAnyThreads) {

@@ -97,6 +97,7 @@ Timing time_400_stops(double readout, double disk, const Motion& motion) {
                                           on ? std::optional(course.seconds) : std::nullopt;
                                     }};
            }});
+  rig.lasers().late_pictures = 0;
   constexpr int stops = 400;
   std::int64_t stands_at = 0;
   const double begin = course.seconds;
@@ -168,6 +169,7 @@ TEST(LaserScanTime, HasEachPictureWrittenWhileTheNextOneIsTaken) {
     }
   });
   Rig rig(simulated.options(1000));
+  rig.lasers().late_pictures = 0;
   ASSERT_TRUE(run_scan(timed_settings(stops), {}, folder.path(), *make_capture(rig), {}, {}));
   EXPECT_EQ(written, 2 * stops);
 }

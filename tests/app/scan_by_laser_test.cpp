@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <functional>
 #include <string>
 #include <vector>
@@ -9,6 +10,7 @@
 #include "app/scanner_fixture.hpp"
 #include "app/simulated_laser_rig.hpp"
 #include "build/colour_model.hpp"
+#include "capture/take_pictures.hpp"
 #include "mesh/vertex_table.hpp"
 #include "octurn/scan_folder.hpp"
 #include "store/stored_scan.hpp"
@@ -131,6 +133,9 @@ TEST_F(ScanByLaser, HasALaserOnForItsOwnPictureAlone) {
   const std::string log = rig_.log();
   const std::size_t begin = log.find('A');
   std::string expected;
+  for (int time = 0; time < 5; ++time) {
+    expected += "Appap";  // shows how late the camera is
+  }
   for (int stop = 0; stop < laser_stops; ++stop) {
     expected += std::string(stop == 0 ? "" : "p") + "ApaBpb";
   }
@@ -141,7 +146,7 @@ TEST_F(ScanByLaser, HasALaserOnForItsOwnPictureAlone) {
 
 TEST_F(ScanByLaser, TakesAStopAgainWhosePictureIsLost) {
   Scanner scanner(rig_.options(laser_speed), {}, store_);
-  before_picture(scanner, 7, [this] { rig_.lost_pictures = 1; });
+  before_picture(scanner, 27, [this] { rig_.lost_pictures = 1; });
   scanner.start(laser_scan_settings());
   const Job job = ended_job(scanner);
   ASSERT_EQ(job.state, JobState::finished) << job.failure->detail;
@@ -150,7 +155,7 @@ TEST_F(ScanByLaser, TakesAStopAgainWhosePictureIsLost) {
 
 TEST_F(ScanByLaser, PausesWithoutItsCameraAndGoesOnAtTheSameStop) {
   Scanner scanner(rig_.options(laser_speed), {}, store_);
-  before_picture(scanner, 10, [this] { rig_.is_unplugged = true; });
+  before_picture(scanner, 30, [this] { rig_.is_unplugged = true; });
   scanner.start(laser_scan_settings());
   const Job paused = ended_job(scanner);
   ASSERT_EQ(paused.state, JobState::paused);
@@ -183,6 +188,42 @@ TEST_F(ScanByLaser, EndsWithItsLasersOffWhenItIsCancelled) {
   scanner.start(laser_scan_settings());
   EXPECT_EQ(ended_job(scanner).state, JobState::cancelled);
   EXPECT_FALSE(rig_.is_lit());
+}
+
+/// The pictures of a stop to which the platform has turned from another one.
+std::vector<Picture> pictures_at(SimulatedLaserRig& simulated) {
+  Rig rig(simulated.options(laser_speed));
+  EXPECT_TRUE(take_pictures(rig, {.position = 100}, {}, {}));
+  return take_pictures(rig, {.index = 1, .position = 300}, {}, {})->pictures;
+}
+
+/// The number of pixels that differ by more than noise and a lamp's flicker.
+int difference(const Picture& one, const Picture& other) {
+  constexpr int noise = 25;  // grey levels
+  int pixels = 0;
+  for (std::size_t i = 0; i < one.samples.size(); ++i) {
+    const int change = static_cast<int>(one.samples[i]) - static_cast<int>(other.samples[i]);
+    pixels += std::abs(change) > noise ? 1 : 0;
+  }
+  return pixels;
+}
+
+TEST_F(ScanByLaser, HasTheSamePicturesHoweverLateTheCameraIs) {
+  const std::vector<Picture> in_time = pictures_at(rig_);
+  constexpr int of_a_line = 50;  // pixels
+  EXPECT_GT(difference(in_time[0], in_time[1]), of_a_line);
+  EXPECT_GT(difference(in_time[1], in_time[2]), of_a_line);
+  for (int late = 1; late <= 4; ++late) {
+    SimulatedLaserRig simulated;
+    simulated.late = late;
+    const std::vector<Picture> pictures = pictures_at(simulated);
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_LT(difference(pictures[i], in_time[i]), of_a_line / 5) << late << ", picture " << i;
+    }
+  }
+  SimulatedLaserRig simulated;
+  simulated.late = 5;
+  EXPECT_EQ(code_thrown_by([&] { pictures_at(simulated); }), "sensor-failed");
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ class SimulatedLaserRig {
                                                            .k2 = lens.k2,
                                                            .platform_from_sensor = pose,
                                                            .lasers = lasers},
-                                                          speed);
+                                                          speed, late);
               opened.camera = std::make_unique<FailingCamera>(*this, std::move(opened.camera));
               opened.set_line = [this, set = std::move(opened.set_line)](std::size_t laser,
                                                                          bool on) {
@@ -82,6 +82,7 @@ class SimulatedLaserRig {
   std::optional<std::size_t> dark_laser = {};        ///< that gives no light; set before a scan
   std::optional<CameraLens> other_lens = {};         ///< that differs from the told one
   std::optional<Eigen::Isometry3d> other_pose = {};  ///< the same of the camera's pose
+  int late = 0;                                      ///< pictures by which the camera is late
   double left_turn = 0;  ///< radians that the left laser was turned in its holder, untold
 
  private:

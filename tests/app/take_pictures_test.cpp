@@ -6,6 +6,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <stop_token>
@@ -106,12 +107,15 @@ TEST(Line, IsNoLampThatBecameBrighter) {
 }
 
 constexpr Rgb paint = {40, 12, 9};
+constexpr std::array<std::uint8_t, 2> brightness = {250, 180};  // of the lasers' lines
 
 /// A test camera with two lasers, which tracks which of them are on.
 struct Bench {
   std::string log = {};  ///< A and B for on, a and b for off, p for a picture, c for one in colour
   std::array<bool, 2> is_on = {};
   std::array<bool, 2> gives_light = {true, true};
+  int late = 0;  ///< pictures that still show the lasers as they were, untold by their stamps
+  std::deque<std::array<bool, 2>> exposed = {};  ///< lasers of the pictures to come, oldest first
   int stale = 0;           ///< pictures begun long ago that are handed out first
   int lost_after = 1000;   ///< pictures, then the camera is gone
   int stop_after = 1000;   ///< pictures, then a stop is requested
@@ -151,11 +155,16 @@ struct Bench {
         return TimedPicture{.picture = grey(255), .begin = {}};
       }
       bench_.log += "p";
-      bool is_line_seen = false;
-      for (std::size_t laser = 0; laser < 2; ++laser) {
-        is_line_seen = is_line_seen || (bench_.is_on[laser] && bench_.gives_light[laser]);
+      bench_.exposed.push_back(bench_.is_on);
+      if (bench_.exposed.size() > static_cast<std::size_t>(bench_.late) + 1) {
+        bench_.exposed.pop_front();
       }
-      Picture seen = with_line(bench_.room, is_line_seen ? height : 0, 250);
+      Picture seen = grey(bench_.room);
+      for (std::size_t laser = 0; laser < 2; ++laser) {
+        if (bench_.exposed.front()[laser] && bench_.gives_light[laser]) {
+          seen = with_line(bench_.room, height, brightness[laser]);
+        }
+      }
       seen.width = bench_.columns;
       return TimedPicture{.picture = std::move(seen), .begin = Clock::now()};
     }
@@ -181,7 +190,63 @@ struct Bench {
 
 std::optional<StopPictures> take(Bench& bench) {
   Rig rig(bench.options());
+  rig.lasers().late_pictures = 0;
   return take_pictures(rig, {.index = 0, .position = 3}, bench.stop.get_token(), {});
+}
+
+/// The same with a camera whose lateness was not measured.
+std::optional<StopPictures> take_first(Bench& bench) {
+  Rig rig(bench.options());
+  return take_pictures(rig, {.index = 0, .position = 3}, bench.stop.get_token(), {});
+}
+
+TEST(TakePictures, PassesOverThePicturesOfALateCamera) {
+  for (int late = 0; late <= 4; ++late) {
+    SCOPED_TRACE(late);
+    Bench bench;
+    bench.late = late;
+    const auto taken = take_first(bench);
+    ASSERT_TRUE(taken);
+    ASSERT_EQ(taken->pictures.size(), 3U);
+    EXPECT_EQ(taken->pictures[0].samples, grey(20).samples);
+    EXPECT_EQ(taken->pictures[1].samples, with_line(20, height, brightness[0]).samples);
+    EXPECT_EQ(taken->pictures[2].samples, with_line(20, height, brightness[1]).samples);
+    EXPECT_FALSE(bench.is_lit());
+  }
+}
+
+TEST(TakePictures, RefusesACameraThatIsLaterThanFourPictures) {
+  for (const int late : {5, 6, 7, 9}) {
+    SCOPED_TRACE(late);
+    Bench bench;
+    bench.late = late;
+    const Error error = error_thrown_by([&] { take_first(bench); });
+    EXPECT_EQ(error.code(), ErrorCode::sensor_failed);
+    EXPECT_NE(std::string(error.what()).find("more than 4 late"), std::string::npos)
+        << error.what();
+    EXPECT_FALSE(bench.is_lit());
+  }
+}
+
+TEST(TakePictures, MeasuresHowLateACameraIsByTheLaserThatShows) {
+  Bench bench;
+  bench.late = 2;
+  bench.gives_light[0] = false;
+  Rig rig(bench.options());
+  const Error error =
+      error_thrown_by([&] { take_pictures(rig, {.index = 0, .position = 3}, {}, {}); });
+  EXPECT_EQ(error.code(), ErrorCode::sensor_blind);
+  EXPECT_NE(std::string(error.what()).find("laser left"), std::string::npos) << error.what();
+  EXPECT_EQ(rig.lasers().late_pictures, 2);
+}
+
+TEST(TakePictures, MeasuresHowLateACameraIsOnceAfterItWasOpened) {
+  Bench bench;
+  Rig rig(bench.options());
+  ASSERT_TRUE(take_pictures(rig, {.position = 3}, {}, {}));
+  bench.log.clear();
+  ASSERT_TRUE(take_pictures(rig, {.index = 1, .position = 6}, {}, {}));
+  EXPECT_EQ(bench.log, "pApaBpb");
 }
 
 TEST(TakePictures, TakesADarkOneAndOneWithEachLaserAlone) {
@@ -248,13 +313,14 @@ TEST(TakePictures, HasAllLasersOffWhereverTheCameraIsLost) {
     Bench bench;
     bench.lost_after = pictures;
     Rig rig(bench.options());
+    rig.lasers().late_pictures = 0;
     EXPECT_EQ(code_thrown_by([&] { take_pictures(rig, {.position = 3}, {}, {}); }), "sensor-lost");
     EXPECT_FALSE(bench.is_lit());  // while the rig still holds their lines
   }
 }
 
 TEST(TakePictures, HasAllLasersOffWhereverItIsStopped) {
-  for (int pictures = 0; pictures < 3; ++pictures) {
+  for (int pictures = 0; pictures < 20; ++pictures) {  // of which 17 measure how late they are
     SCOPED_TRACE(pictures);
     Bench bench;
     bench.stop_after = pictures;

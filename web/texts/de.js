@@ -1346,4 +1346,10 @@ export const said = {
   'line': 'Leitung',
   'lines': 'Leitungen',
   'address': 'Adresse',
+  'the camera\'s pictures are more than {} late: a laser that is switched on shows in a later one': 'die Bilder der Kamera kommen um mehr als {} zu spät: ein Laser, der eingeschaltet wird, ist erst auf einem späteren zu sehen',
+  'Use another camera, or another USB port without other devices.': 'Eine andere Kamera verwenden, oder einen anderen USB-Anschluss ohne weitere Geräte.',
+  '{}, {} x {}, sees laser left and right': '{}, {} x {}, sieht die Laser links und rechts',
+  '{}, {} x {}, sees laser left': '{}, {} x {}, sieht den linken Laser',
+  '{}, {} x {}, sees laser right': '{}, {} x {}, sieht den rechten Laser',
+  'Correct the lasers\' lines in octurn.txt on the card: they are lines of GPIO{} to GPIO{} that nothing else uses.': 'Die Leitungen der Laser in octurn.txt auf der Karte berichtigen: es sind Leitungen von GPIO{} bis GPIO{}, die nichts anderes benutzt.',
 };

@@ -1346,4 +1346,10 @@ export const said = {
   'line': 'línea',
   'lines': 'líneas',
   'address': 'dirección',
+  'the camera\'s pictures are more than {} late: a laser that is switched on shows in a later one': 'las imágenes de la cámara llegan con más de {} de retraso: un láser que se enciende se ve en una posterior',
+  'Use another camera, or another USB port without other devices.': 'Use otra cámara u otro puerto USB sin más dispositivos.',
+  '{}, {} x {}, sees laser left and right': '{}, {} x {}, ve los láseres izquierdo y derecho',
+  '{}, {} x {}, sees laser left': '{}, {} x {}, ve el láser izquierdo',
+  '{}, {} x {}, sees laser right': '{}, {} x {}, ve el láser derecho',
+  'Correct the lasers\' lines in octurn.txt on the card: they are lines of GPIO{} to GPIO{} that nothing else uses.': 'Corrija las líneas de los láseres en octurn.txt en la tarjeta: son líneas de GPIO{} a GPIO{} que nada más usa.',
 };

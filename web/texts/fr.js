@@ -1346,4 +1346,10 @@ export const said = {
   'line': 'ligne',
   'lines': 'lignes',
   'address': 'adresse',
+  'the camera\'s pictures are more than {} late: a laser that is switched on shows in a later one': 'les images de la caméra ont plus de {} images de retard : un laser qu’on allume ne se voit que sur une image suivante',
+  'Use another camera, or another USB port without other devices.': 'Utiliser une autre caméra, ou un autre port USB sans autres appareils.',
+  '{}, {} x {}, sees laser left and right': '{}, {} x {}, voit les lasers gauche et droit',
+  '{}, {} x {}, sees laser left': '{}, {} x {}, voit le laser gauche',
+  '{}, {} x {}, sees laser right': '{}, {} x {}, voit le laser droit',
+  'Correct the lasers\' lines in octurn.txt on the card: they are lines of GPIO{} to GPIO{} that nothing else uses.': 'Corriger les lignes des lasers dans octurn.txt sur la carte : ce sont des lignes de GPIO{} à GPIO{} que rien d’autre n’utilise.',
 };

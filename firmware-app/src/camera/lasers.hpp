@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,10 @@ class Lasers {
   Lasers& operator=(const Lasers&) = delete;
 
   std::size_t count() const { return count_; }
+
+  /// How many pictures the camera is late: so many more show a laser as it was before it was
+  /// switched. Nothing: not measured yet.
+  std::optional<int> late_pictures = {};
 
   /// Switches a laser on. No other may be on.
   /// @throws Error "sensor-failed"  if a line could not be set before: then all were released

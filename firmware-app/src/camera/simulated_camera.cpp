@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstddef>
+#include <deque>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,9 +25,10 @@ using Lit = std::optional<std::size_t>;
 class SimulatedCamera final : public Camera {
  public:
   SimulatedCamera(std::unique_ptr<LaserSimulator> simulator, std::shared_ptr<const Lit> lit,
-                  double speed)
+                  double speed, int late)
       : simulator_(std::move(simulator)),
         lit_(std::move(lit)),
+        late_(static_cast<std::size_t>(late)),
         period_(std::chrono::duration_cast<steady_clock::duration>(
             std::chrono::duration<double>(1 / (pictures_per_second * speed)))) {}
 
@@ -38,8 +40,9 @@ class SimulatedCamera final : public Camera {
     if (!begin) {
       return std::nullopt;
     }
+    const State seen = seen_now();
     return TimedPicture{.picture = shows_board_ ? simulator_->expose_board(board_pictures_++)
-                                                : simulator_->expose(angle_, *lit_),
+                                                : simulator_->expose(seen.angle, seen.lit),
                         .begin = *begin};
   }
 
@@ -48,7 +51,8 @@ class SimulatedCamera final : public Camera {
     if (!begin) {
       return std::nullopt;
     }
-    ColourExposure seen = simulator_->expose_in_colour(angle_, *lit_);
+    const State state = seen_now();
+    ColourExposure seen = simulator_->expose_in_colour(state.angle, state.lit);
     return TimedPicture{
         .picture = std::move(seen.picture), .colours = std::move(seen.colours), .begin = *begin};
   }
@@ -61,6 +65,22 @@ class SimulatedCamera final : public Camera {
   }
 
  private:
+  /// What a picture shows.
+  struct State {
+    double angle = 0;  // of the platform, radians
+    Lit lit = {};
+  };
+
+  /// What the picture shows that is handed out now: platform and lasers as they were some pictures
+  /// ago.
+  State seen_now() {
+    states_.push_back({.angle = angle_, .lit = *lit_});
+    if (states_.size() > late_ + 1) {
+      states_.pop_front();
+    }
+    return states_.front();
+  }
+
   /// Waits until the next picture begins. @return nothing if stopped first
   std::optional<steady_clock::time_point> wait(const std::stop_token& stop) {
     if (!sleep_until(stop, due_)) {
@@ -74,6 +94,8 @@ class SimulatedCamera final : public Camera {
   std::string name_ = "Laser line (simulated)";
   std::unique_ptr<LaserSimulator> simulator_;
   std::shared_ptr<const Lit> lit_;
+  std::size_t late_;               // pictures
+  std::deque<State> states_ = {};  // when the last pictures were read, the oldest first
   steady_clock::duration period_;
   steady_clock::time_point due_ = {};  // the next picture
   double angle_ = 0;                   // of the platform, radians
@@ -83,12 +105,12 @@ class SimulatedCamera final : public Camera {
 
 }  // namespace
 
-CameraAndLasers simulate_laser_rig(const LaserSimulation& simulation, double speed) {
+CameraAndLasers simulate_laser_rig(const LaserSimulation& simulation, double speed, int late) {
   const auto& module = *static_cast<const LaserSimulatorModule*>(
       load_module("libOcturnLaserSimulator.so", "octurn_laser_simulator", "the laser simulator",
                   "Install Octurn again."));
   const auto lit = std::make_shared<Lit>();
-  return {.camera = std::make_unique<SimulatedCamera>(module.make(simulation), lit, speed),
+  return {.camera = std::make_unique<SimulatedCamera>(module.make(simulation), lit, speed, late),
           .set_line = [lit](std::size_t laser, bool on) {
             if (on) {
               *lit = laser;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "octurn/error.hpp"
+#include "rig/interruptible_sleep.hpp"
 #include "store/stored_scan.hpp"
 
 namespace octurn {
@@ -32,10 +33,20 @@ constexpr int min_line_levels = 8;
 constexpr int noises_of_line = 2;
 constexpr int rows_per_line_row = 30;
 
+// The stamp of a USB camera's picture is the host's, when the picture has arrived: it may have been
+// exposed some pictures before. More than this, and a scan would take minutes longer.
+constexpr int max_late = 4;
+constexpr int switchings = 5;  // of a laser, of which the latest picture counts
+// Waited before each switching, times its number: lasers are switched at several moments of an
+// exposure.
+constexpr std::chrono::milliseconds later_each_time{9};
+constexpr double whole_light = 0.8;  // of a laser's: a smaller share was exposed in part
+constexpr double no_light = 0.1;
+
 /// `Camera::read`, or the same with colours.
 using Read = std::optional<TimedPicture> (Camera::*)(const std::stop_token& stop);
 
-/// Takes a picture whose exposure began after `switched`; nothing if stopped first.
+/// Takes a picture whose exposure began after `switched` by its stamp; nothing if stopped first.
 std::optional<TimedPicture> read_picture(Camera& camera, Read read, Clock::time_point switched,
                                          const std::stop_token& stop,
                                          const ScanObserver& observer) {
@@ -72,15 +83,149 @@ void expect_size_for_scan(const Picture& picture, const Intrinsics& lens,
   }
 }
 
-/// Whether a row of a picture shows a line that is not in the dark picture.
+/// The light of a line in a row of a picture, grey levels; 0 if it shows none that is not in the
+/// dark picture.
 /// @param changes  of the row's pixels, grey levels; reordered
-bool shows_line(std::span<int> changes) {
+int light_in(std::span<int> changes) {
   const auto middle = changes.begin() + static_cast<std::ptrdiff_t>(changes.size() / 2);
   std::ranges::nth_element(changes, middle);
   const int room = *middle;  // a lamp's flicker
   const auto [darkest, brightest] = std::ranges::minmax(changes);
-  return brightest - room >= std::max(min_line_levels, noises_of_line * (room - darkest));
+  const bool is_line =
+      brightest - room >= std::max(min_line_levels, noises_of_line * (room - darkest));
+  return is_line ? brightest - room : 0;
 }
+
+/// A laser's line in a picture.
+struct SeenLine {
+  int rows = 0;      // that show it
+  double light = 0;  // grey levels, the sum of the rows'; 0: too few rows show it
+};
+
+SeenLine find_light(const Picture& dark, const Picture& lit) {
+  const auto width = static_cast<std::size_t>(lit.width);
+  std::vector<int> changes(width);
+  SeenLine line;
+  for (std::size_t first = 0; first < lit.samples.size(); first += width) {
+    for (std::size_t u = 0; u < width; ++u) {
+      changes[u] =
+          static_cast<int>(lit.samples[first + u]) - static_cast<int>(dark.samples[first + u]);
+    }
+    const int light = light_in(changes);
+    line.rows += light > 0 ? 1 : 0;
+    line.light += light;
+  }
+  if (line.rows * rows_per_line_row < lit.height) {
+    line.light = 0;
+  }
+  return line;
+}
+
+/// Measures how late the pictures of a camera are that was opened: by how many pictures a laser
+/// shows, or still shows, after it was switched.
+class LatenessMeter {
+ public:
+  /// @param dark  of the platform that stands, with all lasers off
+  LatenessMeter(Rig& rig, const Picture& dark, const std::stop_token& stop,
+                const ScanObserver& observer)
+      : rig_(rig), dark_(dark), stop_(stop), observer_(observer) {}
+
+  /// @return pictures, 0 if no laser shows; nothing if stopped first
+  /// @throws Error "sensor-failed"  if they are more than `max_late` late
+  std::optional<int> measure() {
+    std::size_t laser = 0;  // the first one that shows
+    for (; laser < rig_.lasers().count() && light_ == 0; ++laser) {
+      if (!switch_laser(laser)) {
+        return std::nullopt;
+      }
+    }
+    for (int time = 1; light_ > 0 && time < switchings; ++time) {
+      if (!sleep_for(stop_, time * later_each_time) || !switch_laser(laser - 1)) {
+        return std::nullopt;
+      }
+    }
+    return late_;
+  }
+
+ private:
+  static constexpr int most = max_late + 3;  // pictures after a laser was switched
+
+  /// Switches a laser on and off. @return false if stopped first
+  bool switch_laser(std::size_t laser) {
+    light_ = 0;
+    {
+      const Lasers::Light light = rig_.lasers().light(laser);
+      if (!wait_for_light()) {
+        return false;
+      }
+    }
+    return wait_for_dark();
+  }
+
+  bool wait_for_light() {
+    const Clock::time_point switched = rig_.camera().now();
+    double before = 0;
+    for (int picture = 0; picture < most && light_ == 0; ++picture) {
+      const std::optional<double> light = read_light(switched);
+      if (!light) {
+        return false;
+      }
+      if (*light > 0 && before >= whole_light * *light) {
+        light_ = *light;
+        expect_in_time(picture - 1);
+      }
+      before = *light;
+    }
+    return true;
+  }
+
+  bool wait_for_dark() {
+    const Clock::time_point switched = rig_.camera().now();
+    for (int picture = 0; picture < most; ++picture) {
+      const std::optional<double> light = read_light(switched);
+      if (!light) {
+        return false;
+      }
+      if (light_ > 0 && *light <= no_light * light_) {
+        expect_in_time(picture);
+        return true;
+      }
+      if (light_ == 0 && *light > 0) {
+        expect_in_time(most);  // it did not show while it was on
+      }
+    }
+    expect_in_time(light_ > 0 ? most : 0);
+    return true;
+  }
+
+  /// Reads a picture. @return a laser's light in it; nothing if stopped first
+  std::optional<double> read_light(Clock::time_point switched) {
+    const auto timed = read_picture(rig_.camera(), &Camera::read, switched, stop_, observer_);
+    if (!timed) {
+      return std::nullopt;
+    }
+    expect_size_for_scan(timed->picture, rig_.laser()->lens, rig_.camera().name());
+    return find_light(dark_, timed->picture).light;
+  }
+
+  void expect_in_time(int late) {
+    if (late > max_late) {
+      throw Error(ErrorCode::sensor_failed,
+                  "the camera's pictures are more than " + std::to_string(max_late) +
+                      " late: a laser that is switched on shows in a later one",
+                  "Use another camera, or another USB port without other devices.",
+                  {{"camera", rig_.camera().name()}});
+    }
+    late_ = std::max(late_, late);
+  }
+
+  Rig& rig_;
+  const Picture& dark_;
+  const std::stop_token& stop_;
+  const ScanObserver& observer_;
+  double light_ = 0;  // of the laser that was switched last; 0: it does not show
+  int late_ = 0;      // pictures
+};
 
 }  // namespace
 
@@ -98,17 +243,8 @@ void expect_dark_room(const Picture& dark, const std::string& camera) {
 }
 
 void expect_line(const Picture& dark, const Picture& lit, const std::string& laser) {
-  const auto width = static_cast<std::size_t>(lit.width);
-  std::vector<int> changes(width);
-  int rows = 0;
-  for (std::size_t first = 0; first < lit.samples.size(); first += width) {
-    for (std::size_t u = 0; u < width; ++u) {
-      changes[u] =
-          static_cast<int>(lit.samples[first + u]) - static_cast<int>(dark.samples[first + u]);
-    }
-    rows += shows_line(changes) ? 1 : 0;
-  }
-  if (rows * rows_per_line_row < lit.height) {
+  const auto [rows, light] = find_light(dark, lit);
+  if (light == 0) {
     throw Error(ErrorCode::sensor_blind,
                 "laser " + laser + ": its picture shows no line, in " + std::to_string(rows) +
                     " of " + std::to_string(lit.height) + " rows there is more light",
@@ -122,14 +258,20 @@ std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& 
                                                const ScanObserver& observer,
                                                const KeepPicture& keep) {
   Camera& camera = rig.camera();
+  Lasers& lasers = rig.lasers();
   StopPictures taken;
   std::vector<Picture>& pictures = taken.pictures;
   const auto take = [&](Read read) {
-    std::optional<TimedPicture> timed = read_picture(camera, read, camera.now(), stop, observer);
-    if (timed) {
-      expect_size_for_scan(timed->picture, rig.laser()->lens, camera.name());
-      pictures.push_back(std::move(timed->picture));
+    const Clock::time_point switched = camera.now();
+    std::optional<TimedPicture> timed;
+    for (int late = lasers.late_pictures.value_or(max_late); late >= 0; --late) {
+      timed = read_picture(camera, read, switched, stop, observer);
+      if (!timed) {
+        return timed;
+      }
     }
+    expect_size_for_scan(timed->picture, rig.laser()->lens, camera.name());
+    pictures.push_back(std::move(timed->picture));
     return timed;
   };
   auto dark = take(&Camera::read_in_colour);
@@ -138,8 +280,13 @@ std::optional<StopPictures> take_pictures_here(Rig& rig, const std::stop_token& 
   }
   taken.colours = std::move(dark->colours);
   expect_dark_room(pictures.front(), camera.name());
+  if (!lasers.late_pictures) {
+    lasers.late_pictures = LatenessMeter(rig, pictures.front(), stop, observer).measure();
+    if (!lasers.late_pictures) {
+      return std::nullopt;
+    }
+  }
   keep(pictures.front(), taken.colours);
-  Lasers& lasers = rig.lasers();
   const std::vector<LaserLine> lines = lines_of(*rig.laser());
   for (std::size_t laser = 0; laser < lasers.count(); ++laser) {
     {

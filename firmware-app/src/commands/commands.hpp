@@ -19,6 +19,7 @@ struct RigArguments {
   bool laser = false;          ///< simulates a camera with line lasers, not a depth sensor
   std::string mesh_file = {};  ///< on the simulated platform; empty: the simulator's own object
   bool other_lens = false;     ///< the simulated camera's lens differs from the settings
+  int late_pictures = 0;       ///< by which the simulated camera is late
   bool perfect = false;    ///< the simulated sensor has no error but noise; its configured pose is
                            ///< true
   std::uint32_t unit = 1;  ///< whose optics the simulated sensor has, unless it is perfect

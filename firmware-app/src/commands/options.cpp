@@ -120,7 +120,12 @@ std::vector<const CLI::Option*> add_depth_simulation_options(CLI::App& command, 
 std::vector<const CLI::Option*> add_laser_simulation_options(CLI::App& command, RigArguments& rig) {
   return {command.add_flag("--simulate-lens", rig.other_lens,
                            "the simulated camera's lens is not the one of the settings: it is 1 % "
-                           "longer, off the middle, and distorts")};
+                           "longer, off the middle, and distorts"),
+          command
+              .add_option("--simulate-late", rig.late_pictures,
+                          "how many pictures the simulated camera is late, as webcams are (0)")
+              ->type_name("N")
+              ->check(CLI::Range(0, 10))};
 }
 
 /// Refuses options that are given without the option that they depend on.

@@ -91,8 +91,10 @@ RigOptions laser_rig_options(const RigArguments& arguments, const Config& config
       .motion = to_simulated_motion(config.turntable),
       .load = load_of(arguments),
       .laser = config.laser,
-      .open_camera = [simulation = to_simulation(arguments, config.laser), speed = arguments.speed](
-                         const LaserSettings&) { return simulate_laser_rig(simulation, speed); }};
+      .open_camera = [simulation = to_simulation(arguments, config.laser), speed = arguments.speed,
+                      late = arguments.late_pictures](const LaserSettings&) {
+        return simulate_laser_rig(simulation, speed, late);
+      }};
 }
 
 RigOptions options_of(const RigArguments& arguments, const Config& config) {

@@ -46,6 +46,7 @@ void take(int stops) {
   laser.lens.height = 240;
   laser.exposure = std::chrono::milliseconds(100);
   Rig rig({.stepper = StepperSettings{}, .laser = laser});
+  rig.lasers().late_pictures = 0;  // each light has one picture
   const ScanObserver observer{.on_picture = [](const Picture&) { mark("PICTURE"); }};
   const int steps = rig.turntable().steps_per_turn();
   for (const std::int64_t position : stop_positions(0, steps, stops)) {

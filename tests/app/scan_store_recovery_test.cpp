@@ -9,6 +9,7 @@
 #include "octurn/scan_folder.hpp"
 #include "store/job_file.hpp"
 #include "store/scan_store.hpp"
+#include "store/stored_scan.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 
@@ -107,6 +108,25 @@ TEST(ScanStore, OffersViewsOfEarlierScansThatHaveThem) {
     put(folder.path() / "scans" / job.id / "job.json", record.dump());
     EXPECT_EQ(ScanStore(folder.path()).get(job.id).builds.have_views, !is_by_laser);
   }
+}
+
+TEST(ScanStore, OffersNoViewsOfEarlierScansByLaserInGrey) {
+  const TemporaryFolder folder;
+  const Job job = ScanStore(folder.path()).create({});
+  const fs::path of_job = folder.path() / "scans" / job.id;
+  nlohmann::json record = to_job_json(job);
+  record.erase("has_views");
+  put(of_job / "job.json", record.dump());
+  Scan scan{.sensor_name = "test", .clip = {.min = {0, 0, 0}, .max = {1, 1, 1}}};
+  scan.shots.push_back({.file = shot_file(0)});
+  write_scan(of_job, scan);
+  EXPECT_TRUE(ScanStore(folder.path()).get(job.id).builds.have_views);
+  const Laser laser{.name = "left", .normal = Eigen::Vector3d::UnitX(), .distance = 0.1};
+  scan.laser = LaserCamera{.lasers = {laser}};
+  scan.shots = {{.pictures = picture_files(0, *scan.laser)}};
+  write_scan(of_job, scan);
+  put(of_job / "job.json", record.dump());
+  EXPECT_FALSE(ScanStore(folder.path()).get(job.id).builds.have_views);
 }
 
 TEST(ScanStore, TakesThePlatformToBeAtItsBeginningIfItCannotBeTold) {

@@ -105,6 +105,12 @@ test('whatever the check advises has a translation', async () => {
   assert.deepEqual(advice.filter((words) => !Object.hasOwn(files.get('de').said, words)), []);
 });
 
+test('what the check says of a camera and its lasers has a translation', () => {
+  for (const lasers of ['left and right', 'left', 'right']) {
+    assert.ok(Object.hasOwn(files.get('de').said, `{}, {} x {}, sees laser ${lasers}`), lasers);
+  }
+});
+
 test('German, French and Spanish are not English', () => {
   const wordy = Object.entries(english).filter(([, text]) => typeof text === 'string' && /[a-z]{3,} [a-z]{3,}/.test(text));
   assert.ok(wordy.length > 150);

@@ -393,7 +393,8 @@ std::vector<Finding> check_sensor(const SensorReading& reading, const Box& clip,
     return findings;
   }
   if (const auto* camera = std::get_if<CameraSample>(&reading)) {
-    std::string seen = camera->name + ", " + std::to_string(camera->width) + " x " +
+    // In quotes, as a translation keeps it.
+    std::string seen = "\"" + camera->name + "\", " + std::to_string(camera->width) + " x " +
                        std::to_string(camera->height) + ", sees laser";
     for (const std::string& laser : camera->lasers) {
       seen += (laser == camera->lasers.front() ? " " : " and ") + laser;

@@ -1,12 +1,14 @@
 #include "store/job_file.hpp"
 
 #include <algorithm>
+#include <exception>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "octurn/file.hpp"
 #include "octurn/json_object.hpp"
+#include "octurn/scan_folder.hpp"
 #include "store/job_json.hpp"
 
 namespace octurn {
@@ -35,6 +37,15 @@ std::optional<Failure> failure_from(const std::optional<JsonValue>& object) {
 std::optional<ScanCalibration> calibration_from(const std::optional<JsonValue>& object) {
   return !object || object->json().is_null() ? std::nullopt
                                              : std::optional(to_scan_calibration(*object));
+}
+
+/// Whether a stored scan is by laser line; not if it has no snapshot.
+bool is_by_laser(const std::filesystem::path& folder) {
+  try {
+    return read_scan(folder).laser.has_value();
+  } catch (const std::exception&) {
+    return false;
+  }
 }
 
 std::optional<PoseOf> pose_of_from(const std::optional<JsonValue>& object) {
@@ -96,7 +107,13 @@ Job parse_job(std::string_view text) {
 }
 
 Job read_job(const std::filesystem::path& folder) {
-  return parse_job(read_regular_file(folder / "job.json", max_job_bytes).value_or(""));
+  const json object = parse_json(read_regular_file(folder / "job.json", max_job_bytes).value_or(""),
+                                 ErrorCode::job_malformed, "the file", job_limits);
+  Job job = to_job(object);
+  if (!object.contains("has_views") && is_by_laser(folder)) {  // written by an earlier version
+    job.builds.have_views = false;
+  }
+  return job;
 }
 
 Job to_job(const json& object) {

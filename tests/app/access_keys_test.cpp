@@ -72,6 +72,7 @@ TEST_F(AccessKeysTest, AreKeptWithoutTheKeyInAFileOfTheirOwnersAlone) {
   const std::string secret = made.key.substr(made.key.rfind('-') + 1);
   EXPECT_EQ(secret.size(), 32U);
   EXPECT_EQ(content_of(file()).find(secret), std::string::npos);
+  EXPECT_NE(content_of(file()).find(R"("hash": "$5$)"), std::string::npos) << "SHA-256 of crypt(5)";
 }
 
 TEST_F(AccessKeysTest, AreNoneInAFileThatIsMalformed) {

@@ -87,6 +87,16 @@ TEST(GuessLimit, RemembersWhoOwesMostOfAFlood) {
   EXPECT_FALSE(guesses.allows("10.0.0.1", start));
 }
 
+TEST(GuessLimit, KnowsTheLastThousandSessions) {
+  GuessLimit guesses;
+  for (int i = 0; i < 1001; ++i) {
+    guesses.remember(std::to_string(i), "10.0.0.1", start + i * 1s);
+  }
+  EXPECT_FALSE(guesses.knows("0"));
+  EXPECT_TRUE(guesses.knows("1"));
+  EXPECT_TRUE(guesses.knows("1000"));
+}
+
 /// Somebody who guesses, and somebody with the right password, on a clock of their own.
 class Flood {
  public:

@@ -132,6 +132,26 @@ TEST_F(ScanImport, IsRefusedIfItsJobWouldBeTooLargeToBeRead) {
   EXPECT_EQ(refusal(files).code(), ErrorCode::bad_request);
 }
 
+TEST_F(ScanImport, IsRefusedWhereItsJobCannotBeRead) {
+  for (const std::string& job :
+       {std::string(), std::string("{"), std::string("[]"), std::string(max_job_bytes + 1, ' ')}) {
+    std::vector<ArchivedFile> files = files_of(one_image_scan(2));
+    files.push_back({"job.json", job});
+    const Error error = refusal(files);
+    EXPECT_EQ(error.code(), ErrorCode::bad_request);
+    EXPECT_NE(std::string(error.what()).find("job.json"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(ScanImport, HasNoDateThatIsLongerThanOne) {
+  json job = to_job_json(full_job());
+  job["created"] = std::string(900, '2');
+  std::vector<ArchivedFile> files = files_of(one_image_scan(2));
+  files.push_back({"job.json", job.dump()});
+  EXPECT_EQ(imported_and_read_back({files}), 1U);
+  EXPECT_LT(ScanStore(data_.path()).list().front().times.created.size(), 30U);
+}
+
 TEST_F(ScanImport, DropsALabelThatCannotBeOneAlsoFromTheDisk) {
   std::vector<ArchivedFile> files = files_of(one_image_scan(2));
   files.push_back({"name.txt", std::string(200, 'x')});

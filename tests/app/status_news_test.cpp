@@ -4,6 +4,7 @@
 
 #include "app/app_fixture.hpp"
 #include "http/handlers/events.hpp"
+#include "http/scan_view.hpp"
 
 namespace octurn {
 namespace {
@@ -46,6 +47,27 @@ TEST_F(StatusNewsTest, MakesNoStatusWhileNothingChanges) {
   EXPECT_NE(data_of(wait_for_news(news), "status").find("\"newest\":\"" + job.id + "\""),
             std::string::npos);
   EXPECT_TRUE(news().empty());
+}
+
+TEST_F(StatusNewsTest, TellsWebhooksOfAScanWhoseEndAFullDiskKeepsFromBeingSaved) {
+  const App app = make_app();
+  ScanNews news;
+  Job job = store_.create({});
+  EXPECT_TRUE(news.next(app).empty());
+  job.state = JobState::interrupted;
+  job.failure = Failure{.code = ErrorCode::interrupted};  // the program has ended, and told nobody
+  store_.save(job);
+  EXPECT_TRUE(news.next(app).empty());
+  job.state = JobState::running;
+  store_.save(job);
+  EXPECT_EQ(news.next(app).size(), 1U);
+  job.state = JobState::interrupted;
+  job.failure = Failure{.code = ErrorCode::disk_full};
+  store_.save(job);
+  const std::vector<WebhookEvent> events = news.next(app);
+  ASSERT_EQ(events.size(), 1U);
+  EXPECT_EQ(events.front().name, "scan-paused");
+  EXPECT_NE(events.front().body.find("disk-full"), std::string::npos) << events.front().body;
 }
 
 }  // namespace

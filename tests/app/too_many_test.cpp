@@ -5,7 +5,9 @@
 #include <sys/stat.h>
 
 #include <atomic>
+#include <string>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "app/app_fixture.hpp"
@@ -86,6 +88,28 @@ TEST_F(TooManyTest, FilesOfModelsAreMadeForSixAtOnce) {
   EXPECT_EQ(get("/api/v1/status").status, 200);
   const FileDescriptor writer(::open(model.c_str(), O_RDWR | O_CLOEXEC));
   clients.clear();
+}
+
+TEST_F(TooManyTest, AFileOfAScanThatIsDeletedMeanwhileIsNotFound) {
+  const std::string scan = add_scan();
+  const std::string first = store_.newest_id();
+  add_scan();
+  const std::string last = store_.newest_id();
+  put(store_.model_file(last), "a model");
+  const std::filesystem::path model = store_.model_file(first);
+  ASSERT_EQ(::mkfifo(model.c_str(), S_IRUSR | S_IWUSR), 0);
+  // An archive of models is packed in the order of the scans.
+  for (const auto& [path, deleted] :
+       {std::pair(std::string("/api/v1/scans.zip"), last), std::pair(scan + "/Scan.ply", first)}) {
+    int status = 0;
+    std::jthread client([&, asked = path] { status = get(asked).status; });
+    {
+      const FileDescriptor writer(::open(model.c_str(), O_WRONLY | O_CLOEXEC));  // awaits a reader
+      store_.discard(deleted);
+    }
+    client.join();
+    EXPECT_EQ(status, 404) << path;
+  }
 }
 
 TEST_F(TooManyTest, AFileThatWasMadeIsSentToAll) {

@@ -11,7 +11,7 @@ import {createInterface} from 'node:readline';
 const running = new Set(); // programs to be killed at the attack's end
 process.on('exit', () => running.forEach((program) => program.kill('SIGKILL')));
 
-const patience = 60_000; // ms, timeout of each wait
+const patience = 300_000; // ms, timeout of each wait: beside other work a scan of four stops took more than a minute
 
 /** Fails the attack unless a condition holds. */
 export function require(condition, message) {

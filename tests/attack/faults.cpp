@@ -1,5 +1,6 @@
 // A library that a test preloads into the daemon (LD_PRELOAD). It makes chosen system calls on the
-// files of one folder fail, as a full disk or a bad sector would, and lets the time of day jump.
+// files of one folder fail, as a full disk or a bad sector would, lets the time of day jump, and
+// gives the folder a disk of its own.
 //
 // A mapped file of eight 64-bit numbers selects the failures, and the test may write it at any
 // moment. Its path is in the environment variable OCTURN_FAULTS, the folder's in
@@ -8,12 +9,15 @@
 #include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
+#include <ftw.h>
 #include <sys/mman.h>
 #include <sys/stat.h>
+#include <sys/statvfs.h>
 #include <sys/time.h>
 #include <sys/uio.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cerrno>
@@ -36,7 +40,7 @@ struct Faults {
   std::atomic<std::uint64_t> seen;  // such calls so far
   std::atomic<std::uint64_t> failed;
   std::int64_t clock_seconds;  // added to the time of day
-  std::uint64_t unused;
+  std::uint64_t disk_bytes;    // size of a disk that only the folder is on; 0: the real one's
 };
 
 enum Call : std::uint64_t {
@@ -108,6 +112,20 @@ Call to_call(const char* path, int flags) {
     return write_call;
   }
   return (flags & (O_WRONLY | O_RDWR)) != 0 ? change_call : open_call;
+}
+
+thread_local std::uint64_t taken_bytes = 0;
+
+int add_taken(const char* /*path*/, const struct stat* file, int /*type*/, FTW* /*place*/) {
+  taken_bytes += static_cast<std::uint64_t>(file->st_blocks) * 512;
+  return 0;
+}
+
+/// What is free on a disk that only the folder is on.
+std::uint64_t free_of(std::uint64_t disk_bytes) {
+  taken_bytes = 0;
+  ::nftw(folder_path, add_taken, 16, FTW_PHYS);
+  return disk_bytes - std::min(taken_bytes, disk_bytes);
 }
 
 }  // namespace
@@ -213,6 +231,20 @@ int clock_gettime(clockid_t clock, timespec* time) noexcept {
     time->tv_sec += faults()->clock_seconds;
   }
   return status;
+}
+
+int statvfs(const char* path, struct statvfs* found) noexcept {
+  static auto* const real = next<int(const char*, struct statvfs*)>("statvfs");
+  const int status = real(path, found);
+  if (status == 0 && faults() != nullptr && faults()->disk_bytes > 0 && is_ours(path)) {
+    found->f_bavail = free_of(faults()->disk_bytes) / found->f_frsize;
+    found->f_bfree = found->f_bavail;
+  }
+  return status;
+}
+
+int statvfs64(const char* path, struct statvfs64* found) noexcept {
+  return ::statvfs(path, reinterpret_cast<struct statvfs*>(found));  // they are the same here
 }
 
 time_t time(time_t* seconds) noexcept {

@@ -36,6 +36,11 @@ export class Faults {
     this.put(6, BigInt(seconds));
   }
 
+  /** Gives the folder a disk of its own. @param {number} bytes  its size; 0: the real one's */
+  setDisk(bytes) {
+    this.put(7, BigInt(bytes));
+  }
+
   /** The number of calls of the selected kinds, and of those that failed. */
   counts() {
     const numbers = Buffer.alloc(16);

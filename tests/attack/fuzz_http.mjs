@@ -1,14 +1,16 @@
 // fuzz_http REQUESTS [SEED]: sends the real daemon mutated requests of every route while scans run, are resumed and deleted. After
-// each batch the daemon must be alive and give its status to another address. No response may have status 500 or invalid JSON.
+// each batch the daemon must be alive and give its status to another address. No response may have status 500 or invalid JSON. Lists the routes
+// that accepted no request: some need what chance seldom makes, such as a second pose that fits.
 
 import {mkdirSync, readdirSync, rmSync, writeFileSync} from 'node:fs';
 import {connect} from 'node:net';
 import {join} from 'node:path';
 import {gunzipSync} from 'node:zlib';
 
+import {importOf, smallScan, zipOf} from './archives.mjs';
 import {argument, Daemon, makeFolder, require, requireMemory} from './daemon.mjs';
 import {makeRandom} from './random.mjs';
-import {someRequest} from './requests.mjs';
+import {missingRoutes, someRequest} from './requests.mjs';
 
 const total = argument(0, 5000);
 const seed = argument(1, 20261123);
@@ -76,6 +78,7 @@ mkdirSync(join(root, 'requests'), {recursive: true});
 const daemon = await Daemon.start(folder, {more: ['--appliance', root], settings: {memory_limit_mb: 64}});
 const random = makeRandom(seed);
 const statuses = {};
+const accepted = {}; // requests of status 2xx, by route
 let sent = 0;
 let recent = [];
 
@@ -87,18 +90,26 @@ async function sendSome(known, end) {
     recent.push(request.bytes);
     const status = check(await exchange(daemon.port, request));
     statuses[status] = (statuses[status] ?? 0) + 1;
+    accepted[request.route] = (accepted[request.route] ?? 0) + Number(status.startsWith('2'));
   }
 }
 
 try {
+  require(missingRoutes().length === 0, `no request asks for ${missingRoutes()}`);
   const first = await daemon.whenDone((await daemon.scan({snapshots: 2, frames: 1, leaf_size_mm: 4})).id);
   require(first.state === 'finished', `the first scan is ${JSON.stringify(first)}`);
   const descriptors = daemon.descriptors();
   while (sent < total) {
     recent = [];
-    const ids = (await daemon.get('/api/v1/scans')).scans.map((scan) => scan.id);
+    const {scans} = await daemon.get('/api/v1/scans');
+    const ids = scans.map((scan) => scan.id);
+    if (!scans.some(({state}) => state === 'finished')) {
+      await importOf(daemon, zipOf(smallScan())); // without a model most requests have nothing to ask for
+    }
     const end = Math.min(total, sent + batch);
-    await Promise.all(Array.from({length: together}, () => sendSome({ids, port: daemon.port}, end)));
+    const [key, webhook, printer] = await Promise.all(['keys', 'webhooks', 'printers'].map(async (list) =>
+      (await daemon.get(`/api/v1/${list}`))[list].map(({id}) => id)));
+    await Promise.all(Array.from({length: together}, () => sendSome({ids, key, webhook, printer, port: daemon.port}, end)));
     require(daemon.isAlive, 'the daemon has ended');
     const status = await daemon.ask('GET', '/api/v1/status', undefined, {localAddress: '127.0.0.2'});
     require(status.status === 200 && status.json.version, `status says ${status.status}`);
@@ -114,7 +125,12 @@ try {
   requireMemory(memory < 400e6, `${memory} bytes are resident`);
   const [status, signal] = await daemon.end();
   require(status === 0, `SIGTERM ends it with ${status ?? signal}`);
-  console.log(`counted: fuzz_http: ${sent} requests (seed ${seed}), ${Math.round(memory / 1e6)} MB resident, answers ${JSON.stringify(statuses)}`);
+  const never = Object.keys(accepted).filter((route) => accepted[route] === 0);
+  for (const route of ['POST /api/v1/scans', 'POST /api/v1/calibration', 'POST /api/v1/scans/{id}/builds', 'POST /api/v1/scans/import']) {
+    require(total < 50_000 || accepted[route] > 0, `no ${route} was accepted`);
+  }
+  console.log(`counted: fuzz_http: ${sent} requests (seed ${seed}), ${Math.round(memory / 1e6)} MB resident, answers ${JSON.stringify(statuses)}; of ` +
+    `${Object.keys(accepted).length} routes ${never.length} accepted none: ${never.join(', ')}`);
 } catch (error) {
   writeFileSync(join(folder, 'requests.json'), JSON.stringify(recent.map((bytes) => bytes.toString('latin1'))));
   console.error(`fuzz_http: seed ${seed}, request ${sent}: ${error.message}\n${daemon.log}`);

@@ -78,7 +78,7 @@ async function timesOf(daemon) {
   for (let i = 0; i < looks; ++i) {
     for (const path of ['/', '/api/v1/status']) {
       const begin = performance.now();
-      const reply = await daemon.ask('GET', path, undefined, visitor);
+      const reply = await daemon.ask('GET', path, undefined, {localAddress: visitor});
       require(reply.status === 200, `GET ${path}: ${reply.status} ${reply.body}`);
       times.push(performance.now() - begin);
     }

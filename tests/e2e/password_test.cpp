@@ -132,6 +132,22 @@ TEST(Serve, TakesANewPasswordAtOnce) {
   EXPECT_EQ(locked.answer("/", proof_of("another one", locked.nonce, {.uses = 2})), 200);
 }
 
+TEST(Serve, ChecksAKeyAlsoWithoutAPassword) {
+  const TemporaryFolder folder;
+  const Daemon daemon(folder.path());
+  const std::string key =
+      parsed(daemon.post("/api/v1/keys", R"({"name": "A display", "access": "read"})"))["key"];
+  const auto change = [&](const Headers& headers) {
+    return request(daemon.port(), "PATCH", "/api/v1/settings", R"({"scan": {"frames": 7}})",
+                   headers)
+        .status;
+  };
+  EXPECT_EQ(daemon.get("/api/v1/status", {{"Authorization", "Bearer " + key}}).status, 200);
+  EXPECT_EQ(change({{"Authorization", "Bearer " + key}}), 403);
+  EXPECT_EQ(change({{"Authorization", "Bearer octurn-0-0"}}), 401);
+  EXPECT_EQ(change({}), 200);
+}
+
 TEST(Serve, DoesNotStartWithoutTheFileOfItsPassword) {
   const TemporaryFolder folder;
   Program program(

@@ -1182,6 +1182,7 @@ export const said = {
   'as they were stored': 'wie gespeichert',
   'Look through the page\'s settings and save them again.': 'Die Einstellungen der Seite durchsehen und noch einmal speichern.',
   'Delete scans that are no longer needed.': 'Scans löschen, die nicht mehr gebraucht werden.',
+  'Delete scans that are no longer needed, and empty the bin.': 'Scans löschen, die nicht mehr gebraucht werden, und den Papierkorb leeren.',
   '{} GB free, enough for {} scans': '{} GB frei, genug für {} Scans',
   '{} MB free, enough for {} scans': '{} MB frei, genug für {} Scans',
   '{} GB free, enough for {} scan': '{} GB frei, genug für {} Scan',

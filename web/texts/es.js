@@ -1182,6 +1182,7 @@ export const said = {
   'as they were stored': 'como se guardaron',
   'Look through the page\'s settings and save them again.': 'Revisar los ajustes de la página y guardarlos otra vez.',
   'Delete scans that are no longer needed.': 'Borrar escaneos que ya no hagan falta.',
+  'Delete scans that are no longer needed, and empty the bin.': 'Borrar escaneos que ya no hagan falta y vaciar la papelera.',
   '{} GB free, enough for {} scans': '{} GB libres, bastan para {} escaneos',
   '{} MB free, enough for {} scans': '{} MB libres, bastan para {} escaneos',
   '{} GB free, enough for {} scan': '{} GB libres, bastan para {} escaneo',

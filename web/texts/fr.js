@@ -1182,6 +1182,7 @@ export const said = {
   'as they were stored': 'tels qu’enregistrés',
   'Look through the page\'s settings and save them again.': 'Revoir les réglages de la page et les enregistrer à nouveau.',
   'Delete scans that are no longer needed.': 'Supprimer les numérisations devenues inutiles.',
+  'Delete scans that are no longer needed, and empty the bin.': 'Supprimer les numérisations devenues inutiles et vider la corbeille.',
   '{} GB free, enough for {} scans': '{} Go libres, assez pour {} numérisations',
   '{} MB free, enough for {} scans': '{} Mo libres, assez pour {} numérisations',
   '{} GB free, enough for {} scan': '{} Go libres, assez pour {} numérisation',

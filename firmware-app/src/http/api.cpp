@@ -286,7 +286,14 @@ Response Api::dispatch(const Request& request) {
       const auto parts = match(route.path, request.path);
       if (parts && route.method == method) {
         const Place place(places_for(route), "others are waiting for the devices");
-        return std::visit(Call{app_, events_, request, *parts}, route.handler);
+        try {
+          return std::visit(Call{app_, events_, request, *parts}, route.handler);
+        } catch (const Error&) {
+          if (request.is_read() && route.path.starts_with("/api/v1/scans/{id}")) {
+            find_scan(app_, parts->id);  // throws if the scan was deleted meanwhile, with its files
+          }
+          throw;
+        }
       }
       if (parts) {
         allow(route.method, allowed);

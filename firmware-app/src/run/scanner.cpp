@@ -58,17 +58,14 @@ bool waits_for_model(const Job& job) {
 }
 
 constexpr std::uint64_t import_factor = 3;  // the archive, its files, and their model
-constexpr const char* scan_from_file = "a scan from a file";
 
 std::mutex checking;  // one archive at a time: a check takes up to 100 MB of memory
 
-/// Checks that room can be made, without making it.
-/// @throws Error "disk-full"  if the free space and the bin's do not suffice
-void expect_possible_room(const ScanStore& store, std::uint64_t needed) {
-  const std::uint64_t free = store.free_bytes();
-  if (free < needed && store.bin().oldest(needed - free).empty()) {
-    expect_room(store.data(), free, needed, scan_from_file);
-  }
+/// Checks that there is room for a part of an import. The bin's scans stay: what is in an archive
+/// is known when all of it is unpacked, and one that is refused must have removed nothing.
+/// @throws Error "disk-full"
+void expect_import_room(const ScanStore& store, std::uint64_t bytes) {
+  expect_room(store.data(), store.free_bytes(), bytes, "a scan from a file");
 }
 
 /// Receives an archive, checks it, and adds its scan to the store.
@@ -76,12 +73,12 @@ Job take_archive(ScanStore& store, const ArchiveSource& archive, const fs::path&
                  const std::stop_token& stop) {
   const fs::path file = folder / ".scan.zip";
   receive_archive(
-      archive, file, [&](std::uint64_t bytes) { store.make_room(bytes, scan_from_file); }, stop);
+      archive, file, [&](std::uint64_t bytes) { expect_import_room(store, bytes); }, stop);
   const std::lock_guard lock(checking);
   throw_if_stopped(stop);
   const auto unpack = [&] {
     check_archive_files(file);
-    store.make_room((import_factor - 1) * archive.bytes, scan_from_file);
+    expect_import_room(store, (import_factor - 1) * archive.bytes);
     read_scan_archive(file, folder, stop);
   };
   std::async(std::launch::async, unpack).get();  // on a larger stack than a server thread's
@@ -468,10 +465,10 @@ std::optional<BuildRun> Scanner::build(std::string_view id, const BuildOrder& or
 
 /// `scans_` is held.
 std::optional<BuildRun> Scanner::offer_build(BuildCommand command) {
-  store_.make_room(max_model_bytes(), "a model");
   if (slot_.is_busy() || slot_.has_ended()) {
     return std::nullopt;
   }
+  store_.make_room(max_model_bytes(), "a model");  // last, as it may take the bin's
   BuildRun& run = command.run;
   run.number = store_.next_build(run.scan);
   run.created = utc_text(std::chrono::system_clock::now(), rfc3339);
@@ -578,7 +575,7 @@ void Scanner::expect_not_building(std::string_view id) const {
 }
 
 Job Scanner::adopt(const ArchiveSource& archive) {
-  expect_possible_room(store_, import_factor * archive.bytes);
+  expect_import_room(store_, import_factor * archive.bytes);
   const std::filesystem::path folder = store_.begin_import();
   Job job;
   try {

@@ -63,7 +63,7 @@ void expect_room(const fs::path& data, std::uint64_t available, std::uint64_t ne
     throw Error(ErrorCode::disk_full,
                 whole_mb_text(available) + " free in " + data.string() + ", " + what + " needs " +
                     whole_mb_text(needed),
-                "Delete scans that are no longer needed.",
+                "Delete scans that are no longer needed, and empty the bin.",
                 {{"free_mb", mb(available)}, {"needed_mb", mb(needed)}, {"path", data.string()}});
   }
 }

@@ -31,7 +31,7 @@ constexpr std::string_view snapshots_prefix = "snapshots/";
 constexpr std::size_t max_archived_file_bytes = std::size_t{32} << 20U;
 
 constexpr std::size_t part_bytes = std::size_t{16} << 10U;
-constexpr std::uint64_t room_bytes = std::uint64_t{8} << 20U;  // made at a time
+constexpr std::uint64_t room_bytes = std::uint64_t{8} << 20U;  // checked at a time
 
 // Limits of an imported scan, so that its check takes up to 100 MB of memory and some minutes.
 // 4,000 snapshots in 1,000 poses have 160,000 values. While an image is decoded it takes 4 bytes a
@@ -202,7 +202,7 @@ void write_scan_archive(const fs::path& scan, const fs::path& archive) {
 }
 
 void receive_archive(const ArchiveSource& source, const fs::path& target,
-                     const std::function<void(std::uint64_t bytes)>& make_room,
+                     const std::function<void(std::uint64_t bytes)>& check_room,
                      const std::stop_token& stop) {
   AtomicFile file(target);
   std::vector<std::byte> part(part_bytes);
@@ -211,7 +211,7 @@ void receive_archive(const ArchiveSource& source, const fs::path& target,
   for (std::size_t got = 0; (got = source.read(part)) > 0; bytes += got) {
     throw_if_stopped(stop);
     if (bytes + got > room) {
-      make_room(room_bytes);
+      check_room(room_bytes);
       room += room_bytes;
     }
     file.write(std::span(part).first(got));

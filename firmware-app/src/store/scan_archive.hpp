@@ -27,11 +27,11 @@ struct ArchiveSource {
 };
 
 /// Writes the bytes of an archive to a file as they arrive.
-/// @param make_room  called before that many bytes more are written
+/// @param check_room  called before that many bytes more are written
 /// @throws Error "cut-short"  if fewer bytes arrive than were announced; "disk-full",
 ///               "write-failed"; Stopped
 void receive_archive(const ArchiveSource& source, const std::filesystem::path& target,
-                     const std::function<void(std::uint64_t bytes)>& make_room,
+                     const std::function<void(std::uint64_t bytes)>& check_room,
                      const std::stop_token& stop);
 
 /// Checks an archive's list of files. Uses 70 KB of stack.

@@ -453,25 +453,8 @@ void write_collection(const std::vector<Job>& jobs, const std::vector<fs::path>&
   zip.commit();
 }
 
-}  // namespace
-
-Response send_table(App& app, const Request& request) {
-  const auto parameters = parameters_of(request, {"ids"});
-  return {.headers = {{"Content-Type", "text/csv; charset=utf-8"},
-                      {"Content-Disposition", attachment("scans.csv")},
-                      {"Cache-Control", "private, no-cache"}},
-          .body = to_csv(chosen_scans(app, value_of(parameters, "ids")))};
-}
-
-Response send_collection(App& app, const Request& request) {
-  const auto parameters = parameters_of(request, {"ids", "format"});
-  const std::string extension = "." + value_of(parameters, "format").value_or("stl");
-  if (extension != ".stl" && find_mesh_format(extension) == nullptr) {
-    throw Error(ErrorCode::bad_settings, "\"format\" names no format of models",
-                "It is stl, or one of the settings' model_formats.");
-  }
-  const std::vector<Job> jobs = chosen_scans(app, value_of(parameters, "ids"));
-  const Place place(&packing_places, "an archive is being packed for others");
+Response pack_collection(App& app, const Request& request, const std::vector<Job>& jobs,
+                         const std::string& extension) {
   std::vector<fs::path> models;
   std::vector<std::string> names;
   std::set<std::string> used;
@@ -495,6 +478,35 @@ Response send_collection(App& app, const Request& request) {
   const Scratch archive(app.store.data() / "scans" / ".export-scans.zip");
   std::async(std::launch::async, write_collection, jobs, models, names, archive.path()).get();
   return file_response(request, archive.path(), "application/zip", "scans.zip");
+}
+
+}  // namespace
+
+Response send_table(App& app, const Request& request) {
+  const auto parameters = parameters_of(request, {"ids"});
+  return {.headers = {{"Content-Type", "text/csv; charset=utf-8"},
+                      {"Content-Disposition", attachment("scans.csv")},
+                      {"Cache-Control", "private, no-cache"}},
+          .body = to_csv(chosen_scans(app, value_of(parameters, "ids")))};
+}
+
+Response send_collection(App& app, const Request& request) {
+  const auto parameters = parameters_of(request, {"ids", "format"});
+  const std::string extension = "." + value_of(parameters, "format").value_or("stl");
+  if (extension != ".stl" && find_mesh_format(extension) == nullptr) {
+    throw Error(ErrorCode::bad_settings, "\"format\" names no format of models",
+                "It is stl, or one of the settings' model_formats.");
+  }
+  const std::vector<Job> jobs = chosen_scans(app, value_of(parameters, "ids"));
+  const Place place(&packing_places, "an archive is being packed for others");
+  try {
+    return pack_collection(app, request, jobs, extension);
+  } catch (const Error&) {
+    for (const Job& job : jobs) {
+      find_scan(app, job.id);  // throws if it was deleted meanwhile, with its model
+    }
+    throw;
+  }
 }
 
 Response import_scan(App& app, const Request& request) {

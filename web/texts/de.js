@@ -1028,6 +1028,7 @@ export const texts = {
   'setting.threads': 'Threads',
   'setting.keep_sensor_on': 'Den Sensor anlassen',
   'setting.host_names': 'Namen dieses Scanners',
+  'setting.trusted_proxies': 'Vertraute Proxys',
   'setting.listen': 'Adresse',
   'setting.port': 'Port',
   'setting-help.scan.snapshots': 'Halte in einer Umdrehung.',
@@ -1061,6 +1062,7 @@ export const texts = {
   'setting-help.threads': 'Threads einer Rekonstruktion.',
   'setting-help.keep_sensor_on': 'Zwischen Scans, damit er warm bleibt. Sonst geht er eine halbe Minute nach dem letzten Gebrauch aus.',
   'setting-help.host_names': 'Namen, unter denen die Seite geöffnet werden darf, neben den örtlichen.',
+  'setting-help.trusted_proxies': 'Adressen von Proxys, die Host und Client der Seite nennen dürfen (X-Forwarded-Host, X-Forwarded-For).',
   'setting-help.listen': 'Wo die Seite zu finden ist; 0.0.0.0 ist jedes Netz.',
   'setting-help.port': 'Der Seite; 0 ist irgendein freier.',
 };

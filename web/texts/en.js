@@ -1068,6 +1068,7 @@ export const texts = {
   'setting.threads': 'Threads',
   'setting.keep_sensor_on': 'Keep the sensor on',
   'setting.host_names': 'Names of this scanner',
+  'setting.trusted_proxies': 'Trusted proxies',
   'setting.listen': 'Address',
   'setting.port': 'Port',
   'setting-help.scan.snapshots': 'Stops in a turn.',
@@ -1101,6 +1102,7 @@ export const texts = {
   'setting-help.threads': 'Threads of a reconstruction.',
   'setting-help.keep_sensor_on': 'Between scans, so that it stays warm. Else it is switched off half a minute after its last use.',
   'setting-help.host_names': 'Names that the page may be opened by, besides the local ones.',
+  'setting-help.trusted_proxies': 'Addresses of proxies that may name the page’s host and client (X-Forwarded-Host, X-Forwarded-For).',
   'setting-help.listen': 'Where the page is served; 0.0.0.0 is every network.',
   'setting-help.port': 'Of the page; 0 is any free one.',
 };

@@ -1028,6 +1028,7 @@ export const texts = {
   'setting.threads': 'Hilos',
   'setting.keep_sensor_on': 'Dejar encendido el sensor',
   'setting.host_names': 'Nombres de este escáner',
+  'setting.trusted_proxies': 'Proxies de confianza',
   'setting.listen': 'Dirección',
   'setting.port': 'Puerto',
   'setting-help.scan.snapshots': 'Paradas en una vuelta.',
@@ -1061,6 +1062,7 @@ export const texts = {
   'setting-help.threads': 'Hilos de una reconstrucción.',
   'setting-help.keep_sensor_on': 'Entre escaneos, para que siga caliente. Si no, se apaga medio minuto después de su último uso.',
   'setting-help.host_names': 'Nombres por los que se puede abrir la página, además de los locales.',
+  'setting-help.trusted_proxies': 'Direcciones de proxies que pueden indicar el host y el cliente de la página (X-Forwarded-Host, X-Forwarded-For).',
   'setting-help.listen': 'Dónde se sirve la página; 0.0.0.0 es cualquier red.',
   'setting-help.port': 'De la página; 0 es cualquiera libre.',
 };

@@ -1028,6 +1028,7 @@ export const texts = {
   'setting.threads': 'Fils d’exécution',
   'setting.keep_sensor_on': 'Laisser le capteur allumé',
   'setting.host_names': 'Noms de ce scanner',
+  'setting.trusted_proxies': 'Proxys de confiance',
   'setting.listen': 'Adresse',
   'setting.port': 'Port',
   'setting-help.scan.snapshots': 'Arrêts dans un tour.',
@@ -1061,6 +1062,7 @@ export const texts = {
   'setting-help.threads': 'Fils d’une reconstruction.',
   'setting-help.keep_sensor_on': 'Entre les numérisations, pour qu’il reste chaud. Sinon, il s’éteint une demi-minute après son dernier usage.',
   'setting-help.host_names': 'Noms par lesquels la page peut être ouverte, en plus des noms locaux.',
+  'setting-help.trusted_proxies': 'Adresses des proxys qui peuvent nommer l’hôte et le client de la page (X-Forwarded-Host, X-Forwarded-For).',
   'setting-help.listen': 'Où la page est servie ; 0.0.0.0 est tout réseau.',
   'setting-help.port': 'De la page ; 0 est n’importe lequel de libre.',
 };

@@ -1,5 +1,7 @@
 #include "config.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <fstream>
@@ -44,11 +46,32 @@ Config config_from(const json& object, const std::optional<SensorKind>& sensor) 
   return config;
 }
 
+/// IP addresses, and no names, which would have to be resolved at each request.
+Access addresses(std::vector<std::string>& value) {
+  Access access = texts(value);
+  access.read = [read = access.read, &value](const JsonValue& given) {
+    read(given);
+    in6_addr bytes{};
+    const auto is_address = [&](const std::string& text) {
+      return ::inet_pton(AF_INET, text.c_str(), &bytes) == 1 ||
+             ::inet_pton(AF_INET6, text.c_str(), &bytes) == 1;
+    };
+    if (!std::ranges::all_of(value, is_address)) {
+      given.refuse("an array of IP addresses");
+    }
+  };
+  return access;
+}
+
 std::vector<Field> access_fields(Config& config) {
   return {
       {.key = "host_names",
        .help = "names that the page may be opened by, besides the local ones",
        .access = texts(config.host_names)},
+      {.key = "trusted_proxies",
+       .help = "IP addresses of proxies whose headers X-Forwarded-Host and X-Forwarded-For are "
+               "believed; others' are ignored",
+       .access = addresses(config.http.trusted_proxies)},
       {.key = "password_file",
        .unit = "file",
        .help = "file with the page's password, below; empty: everybody may open the page",

@@ -45,6 +45,18 @@ TEST(AddressBook, KeepsWhatItWasGivenForTheNextStart) {
   EXPECT_EQ(next.find_printer(next.printers().front().id)->kind, PrinterKind::moonraker);
 }
 
+TEST(AddressBook, KeepsTheCertificateThatAPrinterIsTrustedBy) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "addresses.json";
+  AddressBook book(file);
+  const std::string id = book.add(voron()).id;
+  EXPECT_EQ(content_of(file).find("fingerprint"), std::string::npos);  // older versions read it
+  const std::string fingerprint = "sha256//" + std::string(43, 'A') + "=";
+  EXPECT_EQ(book.trust("none", fingerprint), std::nullopt);
+  EXPECT_EQ(book.trust(id, fingerprint)->name, "Voron");
+  EXPECT_EQ(AddressBook(file).find_printer(id)->fingerprint, fingerprint);
+}
+
 TEST(AddressBook, IsForItsOwnerAlone) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "addresses.json";
@@ -122,10 +134,15 @@ TEST(Printer, IsReadFromWhatAPersonWrites) {
 
 TEST(Printer, HasAKindThatIsKnownAndAKeyOfOneLine) {
   const json good{{"name", "A"}, {"kind", "octoprint"}, {"url", "http://a/"}};
-  for (const json& change : std::vector<json>{{{"kind", "bambu"}},
-                                              {{"name", ""}},
-                                              {{"url", "http://a/?x=1"}},
-                                              {{"key", "a\r\nX-Other: b"}}}) {
+  for (const json& change :
+       std::vector<json>{{{"kind", "bambu"}},
+                         {{"name", ""}},
+                         {{"url", "http://a/?x=1"}},
+                         {{"key", "a\r\nX-Other: b"}},
+                         {{"fingerprint", "sha256//"}},
+                         {{"fingerprint", std::string(52, 'A')}},
+                         {{"fingerprint", "sha256//" + std::string(44, 'A')}},
+                         {{"fingerprint", "sha256//a;b" + std::string(40, 'A') + "="}}}) {
     json body = good;
     body.update(change);
     EXPECT_EQ(code_thrown_by([&] { to_printer(body); }), "bad-settings") << change;

@@ -49,7 +49,8 @@ TEST(Config, TakesHalfOfTheMemoryInWholeMegabytes) {
 
 TEST(Config, IsWrittenAsItIsRead) {
   const json every = json::parse(R"({
-      "listen": "127.0.0.1", "port": 80, "host_names": ["octurn.example"], "data": "/srv/scans",
+      "listen": "127.0.0.1", "port": 80, "host_names": ["octurn.example"],
+      "trusted_proxies": ["10.0.0.2"], "data": "/srv/scans",
       "password_file": "/srv/password", "threads": 2, "memory_limit_mb": 64.5, "scan": {},
       "turntable": {"step_line": "GPIO2", "direction_line": "GPIO3", "enable_line": "GPIO4",
                     "microstep_lines": ["GPIO9", "GPIO10", "GPIO11"], "microsteps": 8,
@@ -78,6 +79,7 @@ TEST(Config, ReadsAFileOfVersion01AsThatDid) {
       {{"calibrate", "auto"}, {"depth_scale", 1.0}, {"parts", "main"}});  // later keys
   expected["sensor"] = "depth";
   expected["keep_sensor_on"] = false;
+  expected["trusted_proxies"] = json::array();
   expected["laser"] = to_json(Config())["laser"];
   // Later keys, in degrees: a turn has 400 * 16 * 2.5 steps.
   json& turntable = expected["turntable"];
@@ -110,8 +112,8 @@ TEST(Config, HasAShorterSettlingTimeForLasersUnlessTheFileHasOne) {
 TEST(Config, NamesTheFileAndTheKeyThatIsWrong) {
   for (const char* const text :
        {R"({"port": 65536})", R"({"port": "80"})", R"({"listen": 1})", R"({"host_names": "a"})",
-        R"({"host_names": [1]})", R"({"data": false})", R"({"data": ""})", R"({"threads": 0})",
-        R"({"memory_limit_mb": 0})", R"({"ports": 80})"}) {
+        R"({"host_names": [1]})", R"({"trusted_proxies": ["proxy.example"]})", R"({"data": false})",
+        R"({"data": ""})", R"({"threads": 0})", R"({"memory_limit_mb": 0})", R"({"ports": 80})"}) {
     const Error error = error_thrown_by([&] { config_of(text); });
     EXPECT_EQ(error.code(), ErrorCode::bad_config) << text;
     const std::string key(text + 1, std::string(text).find(':') - 1);

@@ -38,6 +38,10 @@ Response echo(const Request& request) {
   return {.headers = {{"Content-Type", "application/json"}}, .body = said.dump()};
 }
 
+Response echo_host(const Request& request) {
+  return {.body = std::string(request.header("Host").value_or(""))};
+}
+
 nlohmann::json said(const Reply& reply) { return nlohmann::json::parse(reply.body); }
 
 TEST(HttpServer, HandsOverTheWholeRequest) {
@@ -256,6 +260,17 @@ TEST(HttpServer, WaitsForAPortThatIsFreedSoon) {
   }
   first.reset();
   EXPECT_EQ(second.get(), port);
+}
+
+TEST(HttpServer, TakesTheHostThatATrustedProxyForwards) {
+  HttpOptions options = patient;
+  const auto host = [&] {
+    const HttpServer server(options, echo_host);
+    return request(server.port(), "GET", "/", "", {{"X-Forwarded-Host", "scanner.example"}}).body;
+  };
+  EXPECT_TRUE(host().starts_with("localhost:"));
+  options.trusted_proxies = {"127.0.0.1"};
+  EXPECT_EQ(host(), "scanner.example");
 }
 
 TEST(HttpServer, SaysWhyItCannotListenOnIPv6) {

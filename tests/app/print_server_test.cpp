@@ -85,5 +85,14 @@ TEST(PrintServer, SaysWhatIsWrongAndWhatToDo) {
   EXPECT_NE(trouble_in(printer, {.status = 415})->hint.find("slice"), std::string::npos);
 }
 
+TEST(PrintServer, OffersToTrustACertificateAndNoneInItsPlace) {
+  Printer printer{.kind = PrinterKind::octoprint};
+  const OutgoingAnswer answer{.trouble = "self-signed certificate", .fingerprint = "sha256//A="};
+  EXPECT_EQ(trouble_in(printer, answer)->fingerprint, "sha256//A=");
+  printer.fingerprint = "sha256//B=";
+  EXPECT_EQ(trouble_in(printer, answer)->fingerprint, "");
+  EXPECT_NE(trouble_in(printer, answer)->detail.find("sha256//A="), std::string::npos);
+}
+
 }  // namespace
 }  // namespace octurn

@@ -56,6 +56,37 @@ TEST(SameOrigin, LetsItsOwnPageChangeThings) {
   EXPECT_EQ(code(post({{"content-type", "Application/JSON; charset=utf-8"}})), "");
 }
 
+TEST(SameOrigin, BelievesWhatATrustedProxyForwardsAndNobodyElse) {
+  const std::vector<std::string> proxies{"10.0.0.2"};
+  const auto taken = [&](std::string address, const Headers& headers) {
+    Request request = post(headers);
+    take_forwarded(request, address, proxies);
+    return std::string(*request.header("Host")) + " " + address;
+  };
+  const Headers headers{{"X-Forwarded-Host", "evil.example, scanner.example"},
+                        {"X-Forwarded-For", "1.2.3.4, 10.0.0.9"}};
+  EXPECT_EQ(taken("10.0.0.2", headers), "scanner.example 10.0.0.9");
+  EXPECT_EQ(taken("::ffff:10.0.0.2", headers), "scanner.example 10.0.0.9");
+  EXPECT_EQ(taken("10.0.0.3", headers), "octurn.local:8080 10.0.0.3");
+  EXPECT_EQ(taken("10.0.0.2", {}), "octurn.local:8080 10.0.0.2");
+  // Two proxies: the client is before the first of them. What is no address counts for nothing.
+  EXPECT_EQ(taken("10.0.0.2", {{"X-Forwarded-For", "1.2.3.4,fd00::7 , 10.0.0.2"}}),
+            "octurn.local:8080 fd00::7");
+  EXPECT_EQ(taken("10.0.0.2", {{"X-Forwarded-For", "1.2.3.4, unknown"}}),
+            "octurn.local:8080 10.0.0.2");
+  EXPECT_EQ(taken("10.0.0.2", {{"X-Forwarded-For", "1.2.3.4"}, {"X-Forwarded-For", "10.0.0.9"}}),
+            "octurn.local:8080 10.0.0.9");
+}
+
+TEST(SameOrigin, NamesTheSettingOfAProxyThatItDoesNotBelieve) {
+  const auto refused = refusal(post({{"Content-Type", "application/json"},
+                                     {"Origin", "https://scanner.example"},
+                                     {"X-Forwarded-Host", "scanner.example"}}),
+                               ours);
+  ASSERT_TRUE(refused);
+  EXPECT_NE(refused->hint.find("trusted_proxies"), std::string::npos) << refused->hint;
+}
+
 TEST(SameOrigin, RefusesOtherPages) {
   for (const char* const origin :
        {"http://evil.example", "http://octurn.local", "http://octurn.local:80801", "null", "",

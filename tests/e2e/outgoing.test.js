@@ -2,23 +2,30 @@
 // interface is documented and records the requests.
 
 import assert from 'node:assert/strict';
-import {createHash} from 'node:crypto';
+import {execFile} from 'node:child_process';
+import {X509Certificate, createHash} from 'node:crypto';
 import {once} from 'node:events';
-import {readdir, readFile, readlink} from 'node:fs/promises';
+import {mkdtemp, readdir, readFile, readlink, rm} from 'node:fs/promises';
 import {createServer} from 'node:http';
+import {createServer as createSecureServer} from 'node:https';
 import {createServer as createSilentServer} from 'node:net';
+import {tmpdir} from 'node:os';
 import {join} from 'node:path';
 import {test} from 'node:test';
+import {promisify} from 'node:util';
 
+import {openBrowser, openPage, picture} from './browser.js';
 import {ask, quick, scan, scanFolders, startScanner} from './scanner.js';
 
 /**
  * A server on loopback for a test.
  * @param {(request: any, body: Buffer) => {status: number, headers?: Object, body?: any}} answer
+ * @param {{key?: string, cert?: string}} [secret]  of TLS
+ * @param {number} [port]  0: any
  */
-async function serve(t, answer) {
+async function serve(t, answer, secret = {}, port = 0) {
   const received = [];
-  const server = createServer(async (request, response) => {
+  const server = (secret.key ? createSecureServer : createServer)(secret, async (request, response) => {
     const parts = [];
     for await (const part of request) {
       parts.push(part);
@@ -29,13 +36,26 @@ async function serve(t, answer) {
     response.writeHead(given.status, {'Content-Type': 'application/json', ...given.headers});
     response.end(given.body === undefined ? '' : JSON.stringify(given.body));
   });
-  server.listen(0, '127.0.0.1');
+  server.listen(port, '127.0.0.1');
   await once(server, 'listening');
-  t.after(() => {
+  const close = async () => {
     server.closeAllConnections();
-    server.close();
-  });
-  return {url: `http://127.0.0.1:${server.address().port}`, received};
+    await promisify(server.close).call(server).catch(() => {});  // closed already
+  };
+  t.after(close);
+  return {url: `${secret.key ? 'https' : 'http'}://127.0.0.1:${server.address().port}`, port: server.address().port, received, close};
+}
+
+/** A key, a certificate that it signed itself, and the fingerprint of the key as curl writes it. */
+async function makeSecret(t) {
+  const folder = await mkdtemp(join(tmpdir(), 'octurn-'));
+  t.after(() => rm(folder, {recursive: true}));
+  const [keyFile, certFile] = ['key', 'cert'].map((name) => join(folder, name));
+  await promisify(execFile)('openssl', ['req', '-x509', '-newkey', 'ec', '-pkeyopt', 'ec_paramgen_curve:prime256v1', '-nodes',
+    '-subj', '/CN=printer', '-days', '2', '-keyout', keyFile, '-out', certFile]);
+  const cert = await readFile(certFile, 'utf8');
+  const publicKey = new X509Certificate(cert).publicKey.export({type: 'spki', format: 'der'});
+  return {key: await readFile(keyFile, 'utf8'), cert, fingerprint: `sha256//${createHash('sha256').update(publicKey).digest('base64')}`};
 }
 
 /** The fields and the file of a multipart form. @param {{headers: any, body: Buffer}} request */
@@ -145,6 +165,70 @@ test('a model goes to each kind of printer, whole, and nothing is printed', asyn
   assert.ok(!JSON.stringify(await ask(scanner, 'printers')).includes(key));
   const diagnostics = Buffer.from(await (await fetch(`${scanner.url}api/v1/diagnostics.zip`)).arrayBuffer());
   assert.ok(!diagnostics.includes(key)); // the zip's files are not compressed
+});
+
+test('a printer whose certificate no authority signed gets nothing until it is trusted, and no other one in its place', async (t) => {
+  const scanner = await startScanner(t, quick);
+  const {id} = await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
+  const [own, other] = [await makeSecret(t), await makeSecret(t)];
+  for (const [kind, takes] of /** @type {[string, any][]} */ ([['octoprint', octoprint(/\.stl$/)], ['prusalink', prusalink(/\.stl$/)]])) {
+    const first = await serve(t, takes, own);
+    const url = kind === 'octoprint' ? `${first.url}/octoprint` : first.url;
+    const user = kind === 'octoprint' ? '' : 'maker';
+    const printer = await ask(scanner, 'printers', 'POST', {name: kind, kind, url, user, key});
+    const fingerprint = async () => (await ask(scanner, 'printers')).printers.find((one) => one.id === printer.id).fingerprint;
+    for (const time of [1, 2]) {
+      const asking = await send(scanner, id, {printer: kind});
+      assert.deepEqual([asking.state, asking.fingerprint], ['failed', own.fingerprint], `${time}: ${asking.detail}`);
+      assert.match(asking.hint, /^Trust it if/);
+    }
+    assert.deepEqual(first.received, [], 'nothing is sent, and nothing is trusted, before somebody says so');
+    assert.equal(await fingerprint(), '');
+
+    await ask(scanner, `printers/${printer.id}`, 'PATCH', {fingerprint: own.fingerprint});
+    const upload = await send(scanner, id, {printer: kind});
+    assert.deepEqual([upload.state, upload.fingerprint], ['sent', ''], upload.detail);
+    await ask(scanner, 'settings/backup', 'POST', await ask(scanner, 'settings/backup'));
+    await scanner.end();
+    await scanner.restart();
+    assert.equal(await fingerprint(), own.fingerprint);
+    assert.equal((await send(scanner, id, {printer: kind})).state, 'sent');
+
+    await first.close();
+    const second = await serve(t, takes, other, first.port);
+    const refused = await send(scanner, id, {printer: kind});
+    assert.deepEqual([refused.state, refused.fingerprint], ['failed', '']);
+    assert.ok(refused.detail.includes(other.fingerprint), refused.detail);
+    assert.match(refused.hint, /remove it in the settings and add it again/);
+    assert.deepEqual(second.received, [], 'neither key nor model is sent to it');
+    assert.equal(await fingerprint(), own.fingerprint);
+
+    await ask(scanner, `printers/${printer.id}`, 'PATCH', {fingerprint: ''});
+    assert.equal((await send(scanner, id, {printer: kind})).fingerprint, other.fingerprint);
+    assert.deepEqual(second.received, []);
+  }
+  await assert.rejects(ask(scanner, 'printers/none', 'PATCH', {fingerprint: own.fingerprint}), /not-found/);
+});
+
+test('the page asks before it trusts a certificate, and says which one it is', async (t) => {
+  const scanner = await startScanner(t, quick);
+  const {id} = await scan(scanner, {snapshots: 4, frames: 2, leaf_size_mm: 4});
+  const own = await makeSecret(t);
+  const {url, received} = await serve(t, octoprint(/\.stl$/), own);
+  await ask(scanner, 'printers', 'POST', {name: 'Safe', kind: 'octoprint', url: `${url}/octoprint`, key});
+  const browser = await openBrowser(t);
+  const {page, faults} = await openPage(browser, `${scanner.url}#${id}`, {locale: 'de-DE', screen: 'phone'});
+  await page.getByRole('button', {name: 'An den Drucker senden'}).click();
+  await page.locator('#send-said', {hasText: `sein Fingerabdruck ist "${own.fingerprint}"`}).waitFor();
+  await picture(page, 'printer-certificate');
+  assert.deepEqual(received, []);
+  await page.getByRole('button', {name: 'Vertrauen und senden'}).click();
+  await page.locator('#send-said[data-tone=good]').waitFor();
+  assert.ok(await page.locator('#send-trust').isHidden());
+  assert.equal(received.length, 1);
+  await page.goto(`${scanner.url}#settings`);
+  await page.getByText(`Vertrautes Zertifikat: ${own.fingerprint}`).waitFor();
+  assert.deepEqual(faults, []);
 });
 
 test('a printer that does not take a model says why, and what to do', async (t) => {

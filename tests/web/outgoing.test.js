@@ -8,8 +8,10 @@ import {aboutUpload, scanIn} from '../../web/scan/send.js';
 import {kindOf, textOf} from '../../web/scanner/warning_lines.js';
 
 test('a printer, and how a model gets there, are told in words', () => {
-  assert.equal(aboutPrinter({id: '1', name: 'Voron', kind: 'moonraker', address: 'http://voron.local:7125', has_key: true}), 'Moonraker · http://voron.local:7125');
-  const upload = {printer: 'Voron', state: 'sending', progress: 0.499, detail: '', hint: ''};
+  const printer = {id: '1', name: 'Voron', kind: 'moonraker', address: 'http://voron.local:7125', has_key: true, fingerprint: ''};
+  assert.equal(aboutPrinter(printer), 'Moonraker · http://voron.local:7125');
+  assert.equal(aboutPrinter({...printer, fingerprint: 'sha256//A='}), 'Moonraker · http://voron.local:7125 · Trusted certificate: sha256//A=');
+  const upload = {printer: 'Voron', state: 'sending', progress: 0.499, detail: '', hint: '', fingerprint: ''};
   assert.equal(aboutUpload(upload), 'Sending to Voron, 49 %');
   assert.match(aboutUpload({...upload, state: 'sent'}), /^Voron has the model/);
   assert.equal(aboutUpload({...upload, state: 'failed', detail: 'it is off', hint: 'Turn it on.'}), 'It is off. Turn it on.');

@@ -5,7 +5,7 @@ import {element, setText, show} from '../base/dom.js';
 import {sentence} from '../base/format.js';
 import {text} from '../base/texts.js';
 
-/** @typedef {{printer: string, state: 'sending' | 'sent' | 'failed' | 'cancelled', progress: number, detail: string, hint: string}} Upload */
+/** @typedef {{printer: string, state: 'sending' | 'sent' | 'failed' | 'cancelled', progress: number, detail: string, hint: string, fingerprint: string}} Upload */
 
 const pause = 500;  // milliseconds between polls
 
@@ -27,7 +27,11 @@ export const scanIn = (href) => /scans\/([^/]+)\//.exec(href)?.[1] ?? '';
 function say(words, tone) {
   setText(element('send-said'), words);
   element('send-said').dataset.tone = tone;
+  show(element('send-trust'), false);
 }
+
+/** @type {() => Promise<void>} */
+let trust = async () => {};  // the certificate that "Trust it, and send" stands for
 
 const shownScan = () => scanIn(element('download').getAttribute('href') ?? '');
 
@@ -40,6 +44,7 @@ async function follow(id) {
     }
     say(aboutUpload(upload), upload.state === 'sent' ? 'good' : upload.state === 'failed' ? 'bad' : '');
     if (upload.state !== 'sending') {
+      offerTrust(upload);
       return;
     }
     await new Promise((done) => {
@@ -48,7 +53,17 @@ async function follow(id) {
   }
 }
 
-async function send() {
+/** Offers to trust a certificate that no authority has signed. @param {Upload} upload */
+function offerTrust({fingerprint}) {
+  const printer = element('send-printer').value;
+  trust = async () => {
+    await json(`printers/${printer}`, sending('PATCH', {fingerprint}));
+  };
+  show(element('send-trust'), fingerprint !== '');
+}
+
+/** @param {() => Promise<void>} [first] */
+async function send(first = async () => {}) {
   const id = shownScan();
   const button = element('send-start');
   if (button.getAttribute('aria-disabled') === 'true') {
@@ -56,6 +71,7 @@ async function send() {
   }
   button.setAttribute('aria-disabled', 'true');
   try {
+    await first();
     await json(`scans/${id}/send`, sending('POST', {printer: element('send-printer').value}));
     await follow(id);
   } catch (error) {
@@ -91,6 +107,7 @@ export function prepareSend() {
     event.preventDefault();
     send();
   });
+  element('send-trust').addEventListener('click', () => send(trust));
   new MutationObserver(offer).observe(element('download'), {attributes: true, attributeFilter: ['href', 'hidden']});
   addEventListener('hashchange', () => {
     asked = '';  // printers may have been added meanwhile

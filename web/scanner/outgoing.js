@@ -6,7 +6,7 @@ import {fetchFragment} from '../base/fragment.js';
 import {sentence} from '../base/format.js';
 import {text} from '../base/texts.js';
 
-/** @typedef {{id: string, name: string, kind: string, address: string, has_key: boolean}} Printer */
+/** @typedef {{id: string, name: string, kind: string, address: string, has_key: boolean, fingerprint: string}} Printer */
 /** @typedef {{outcome: 'waiting' | 'delivered' | 'failed', event: string, time: string | null, trouble: string}} Told */
 /** @typedef {{id: string, address: string, events: string[], last: Told | null}} Webhook */
 
@@ -15,7 +15,8 @@ const pause = 1000;  // milliseconds between polls of a delivery
 const looks = 15;
 
 /** The description of a printer. Pure. @param {Printer} printer */
-export const aboutPrinter = ({kind, address}) => `${kinds[kind]} · ${address}`;
+export const aboutPrinter = ({kind, address, fingerprint}) =>
+  `${kinds[kind]} · ${address}${fingerprint && ` · ${text('outgoing.fingerprint', {fingerprint})}`}`;
 
 /** The outcome of the last message. Pure. @param {Webhook} webhook */
 export function aboutWebhook({last}) {

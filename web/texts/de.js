@@ -913,6 +913,7 @@ export const texts = {
   'outgoing.printer-user': 'Benutzer',
   'outgoing.printer-key': 'API-Schlüssel',
   'outgoing.printer-add': 'Drucker hinzufügen',
+  'outgoing.fingerprint': 'Vertrautes Zertifikat: {fingerprint}',
   'outgoing.tell': 'Andere Programme benachrichtigen (Webhooks)',
   'outgoing.tell-about': 'Eine Adresse bekommt eine Nachricht, wenn ein Scan beginnt, pausiert oder endet, und bei Warnungen.',
   'outgoing.tell-more': 'Was sie bekommt',
@@ -929,6 +930,7 @@ export const texts = {
   'outgoing.none': 'Es wurde noch nichts gesendet.',
   'send.printer': 'Drucker für das Modell',
   'send.start': 'An den Drucker senden',
+  'send.trust': 'Vertrauen und senden',
   'send.sending': 'Wird an {printer} gesendet, {percent} %',
   'send.sent': '{printer} hat das Modell. Von selbst wird nichts gedruckt.',
   'send.cancelled': 'Nicht gesendet.',
@@ -1026,6 +1028,7 @@ export const texts = {
   'setting.threads': 'Threads',
   'setting.keep_sensor_on': 'Den Sensor anlassen',
   'setting.host_names': 'Namen dieses Scanners',
+  'setting.trusted_proxies': 'Vertraute Proxys',
   'setting.listen': 'Adresse',
   'setting.port': 'Port',
   'setting-help.scan.snapshots': 'Halte in einer Umdrehung.',
@@ -1059,12 +1062,17 @@ export const texts = {
   'setting-help.threads': 'Threads einer Rekonstruktion.',
   'setting-help.keep_sensor_on': 'Zwischen Scans, damit er warm bleibt. Sonst geht er eine halbe Minute nach dem letzten Gebrauch aus.',
   'setting-help.host_names': 'Namen, unter denen die Seite geöffnet werden darf, neben den örtlichen.',
+  'setting-help.trusted_proxies': 'Adressen von Proxys, die Host und Client der Seite nennen dürfen (X-Forwarded-Host, X-Forwarded-For).',
   'setting-help.listen': 'Wo die Seite zu finden ist; 0.0.0.0 ist jedes Netz.',
   'setting-help.port': 'Der Seite; 0 ist irgendein freier.',
 };
 
 /** @type {Record<string, string>} */
 export const said = {
+  'no authority has signed the printer\'s certificate, whose fingerprint is {}': 'Das Zertifikat des Druckers hat keine bekannte Stelle signiert; sein Fingerabdruck ist {}',
+  'Trust it if this is your printer. Nothing was sent to it yet.': 'Ihm vertrauen, wenn dies der eigene Drucker ist. Noch wurde nichts an ihn gesendet.',
+  'the printer\'s certificate is not the trusted one: its fingerprint is {}': 'Das Zertifikat des Druckers ist nicht das vertraute: sein Fingerabdruck ist {}',
+  'If the printer was set up anew, remove it in the settings and add it again. Otherwise something else answers at its address. Nothing was sent to it.': 'Wurde der Drucker neu eingerichtet, ihn in den Einstellungen entfernen und neu hinzufügen. Sonst antwortet etwas anderes unter seiner Adresse. Gesendet wurde nichts.',
   'a turn of the platform has {} steps, and {} snapshots are asked for': 'eine Umdrehung des Tellers hat {} Schritte, verlangt sind {} Aufnahmen',
   'Take fewer snapshots, or set more microsteps.': 'Weniger Aufnahmen machen oder mehr Mikroschritte einstellen.',
   'the board was held nearly parallel in all pictures, within {} degrees: only a tilted board shows the focal length': 'das Schachbrett wurde in allen Bildern fast gleich gehalten, auf {} Grad: nur ein gekipptes verrät die Brennweite',

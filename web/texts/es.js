@@ -913,6 +913,7 @@ export const texts = {
   'outgoing.printer-user': 'Usuario',
   'outgoing.printer-key': 'Clave de API',
   'outgoing.printer-add': 'Añadir la impresora',
+  'outgoing.fingerprint': 'Certificado de confianza: {fingerprint}',
   'outgoing.tell': 'Avisar a otros programas (webhooks)',
   'outgoing.tell-about': 'Una dirección recibe un mensaje cuando un escaneo empieza, se detiene o termina, y con cada advertencia.',
   'outgoing.tell-more': 'Qué recibe',
@@ -929,6 +930,7 @@ export const texts = {
   'outgoing.none': 'Aún no se ha enviado nada.',
   'send.printer': 'Impresora',
   'send.start': 'Enviar a la impresora',
+  'send.trust': 'Confiar y enviar',
   'send.sending': 'Enviando a {printer}, {percent} %',
   'send.sent': '{printer} tiene el modelo. Por sí sola no imprime nada.',
   'send.cancelled': 'No enviado.',
@@ -1026,6 +1028,7 @@ export const texts = {
   'setting.threads': 'Hilos',
   'setting.keep_sensor_on': 'Dejar encendido el sensor',
   'setting.host_names': 'Nombres de este escáner',
+  'setting.trusted_proxies': 'Proxies de confianza',
   'setting.listen': 'Dirección',
   'setting.port': 'Puerto',
   'setting-help.scan.snapshots': 'Paradas en una vuelta.',
@@ -1059,12 +1062,17 @@ export const texts = {
   'setting-help.threads': 'Hilos de una reconstrucción.',
   'setting-help.keep_sensor_on': 'Entre escaneos, para que siga caliente. Si no, se apaga medio minuto después de su último uso.',
   'setting-help.host_names': 'Nombres por los que se puede abrir la página, además de los locales.',
+  'setting-help.trusted_proxies': 'Direcciones de proxies que pueden indicar el host y el cliente de la página (X-Forwarded-Host, X-Forwarded-For).',
   'setting-help.listen': 'Dónde se sirve la página; 0.0.0.0 es cualquier red.',
   'setting-help.port': 'De la página; 0 es cualquiera libre.',
 };
 
 /** @type {Record<string, string>} */
 export const said = {
+  'no authority has signed the printer\'s certificate, whose fingerprint is {}': 'ninguna autoridad ha firmado el certificado de la impresora, cuya huella es {}',
+  'Trust it if this is your printer. Nothing was sent to it yet.': 'Confíe en él si esta es su impresora. Aún no se le ha enviado nada.',
+  'the printer\'s certificate is not the trusted one: its fingerprint is {}': 'el certificado de la impresora no es el de confianza: su huella es {}',
+  'If the printer was set up anew, remove it in the settings and add it again. Otherwise something else answers at its address. Nothing was sent to it.': 'Si la impresora se configuró de nuevo, quítela en los ajustes y añádala otra vez. Si no, otra cosa responde en su dirección. No se le ha enviado nada.',
   'a turn of the platform has {} steps, and {} snapshots are asked for': 'una vuelta de la plataforma tiene {} pasos, y se piden {} tomas',
   'Take fewer snapshots, or set more microsteps.': 'Hacer menos tomas o ajustar más micropasos.',
   'the board was held nearly parallel in all pictures, within {} degrees: only a tilted board shows the focal length': 'el tablero se sostuvo casi igual en todas las imágenes, dentro de {} grados: solo uno inclinado revela la distancia focal',

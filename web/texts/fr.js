@@ -913,6 +913,7 @@ export const texts = {
   'outgoing.printer-user': 'Utilisateur',
   'outgoing.printer-key': 'Clé d’API',
   'outgoing.printer-add': "Ajouter l'imprimante",
+  'outgoing.fingerprint': 'Certificat approuvé : {fingerprint}',
   'outgoing.tell': "Avertir d'autres programmes (webhooks)",
   'outgoing.tell-about': "Une adresse reçoit un message quand une numérisation commence, fait une pause ou finit, et lors d'avertissements.",
   'outgoing.tell-more': "Ce qu'elle reçoit",
@@ -929,6 +930,7 @@ export const texts = {
   'outgoing.none': "Rien n'a encore été envoyé.",
   'send.printer': 'Imprimante',
   'send.start': "Envoyer à l'imprimante",
+  'send.trust': 'Faire confiance et envoyer',
   'send.sending': 'Envoi à {printer}, {percent} %',
   'send.sent': "{printer} a le modèle. Rien ne s'imprime de soi-même.",
   'send.cancelled': 'Pas envoyé.',
@@ -1026,6 +1028,7 @@ export const texts = {
   'setting.threads': 'Fils d’exécution',
   'setting.keep_sensor_on': 'Laisser le capteur allumé',
   'setting.host_names': 'Noms de ce scanner',
+  'setting.trusted_proxies': 'Proxys de confiance',
   'setting.listen': 'Adresse',
   'setting.port': 'Port',
   'setting-help.scan.snapshots': 'Arrêts dans un tour.',
@@ -1059,12 +1062,17 @@ export const texts = {
   'setting-help.threads': 'Fils d’une reconstruction.',
   'setting-help.keep_sensor_on': 'Entre les numérisations, pour qu’il reste chaud. Sinon, il s’éteint une demi-minute après son dernier usage.',
   'setting-help.host_names': 'Noms par lesquels la page peut être ouverte, en plus des noms locaux.',
+  'setting-help.trusted_proxies': 'Adresses des proxys qui peuvent nommer l’hôte et le client de la page (X-Forwarded-Host, X-Forwarded-For).',
   'setting-help.listen': 'Où la page est servie ; 0.0.0.0 est tout réseau.',
   'setting-help.port': 'De la page ; 0 est n’importe lequel de libre.',
 };
 
 /** @type {Record<string, string>} */
 export const said = {
+  'no authority has signed the printer\'s certificate, whose fingerprint is {}': 'aucune autorité n’a signé le certificat de l’imprimante, dont l’empreinte est {}',
+  'Trust it if this is your printer. Nothing was sent to it yet.': 'Lui faire confiance si c’est la bonne imprimante. Rien ne lui a encore été envoyé.',
+  'the printer\'s certificate is not the trusted one: its fingerprint is {}': 'le certificat de l’imprimante n’est pas celui qui est approuvé : son empreinte est {}',
+  'If the printer was set up anew, remove it in the settings and add it again. Otherwise something else answers at its address. Nothing was sent to it.': 'Si l’imprimante a été réinstallée, la supprimer dans les réglages et l’ajouter à nouveau. Sinon, autre chose répond à son adresse. Rien ne lui a été envoyé.',
   'a turn of the platform has {} steps, and {} snapshots are asked for': 'un tour du plateau a {} pas, et {} prises sont demandées',
   'Take fewer snapshots, or set more microsteps.': 'Prendre moins de prises, ou régler davantage de micropas.',
   'the board was held nearly parallel in all pictures, within {} degrees: only a tilted board shows the focal length': 'le damier a été tenu presque de la même façon dans toutes les images, à {} degrés près : seul un damier incliné révèle la focale',

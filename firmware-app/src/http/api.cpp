@@ -201,6 +201,7 @@ std::span<const Route> other_routes() {
       Route{"POST", "/api/v1/webhooks/{id}/test", test_webhook},
       Route{"GET", "/api/v1/printers", list_printers},
       Route{"POST", "/api/v1/printers", add_printer},
+      Route{"PATCH", "/api/v1/printers/{id}", trust_printer},
       Route{"DELETE", "/api/v1/printers/{id}", remove_printer},
       Route{"GET", "/api/v1/calibration", send_calibration},
       Route{"PATCH", "/api/v1/calibration", change_calibration},

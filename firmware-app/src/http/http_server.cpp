@@ -16,6 +16,7 @@
 
 #include "http/json_body.hpp"
 #include "http/login.hpp"
+#include "http/same_origin.hpp"
 #include "log.hpp"
 #include "octurn/error.hpp"
 
@@ -72,6 +73,7 @@ struct HttpService {
   std::optional<Login> login = {};  // set before the server starts
   const AccessKeys* keys = nullptr;
   HttpServer::Gate gate = {};
+  std::vector<std::string> trusted_proxies = {};
   std::latch started{1};  // released once `guard` exists, or the server has failed to start
   std::optional<ConnectionGuard> guard = {};
 
@@ -106,8 +108,9 @@ HttpService& to_service(const mg_connection* connection) {
 
 /// The gate's answer, or the refusal of missing or wrong credentials; nothing if the request is
 /// admitted.
+/// @param address  of the client
 std::optional<Response> refusal(mg_connection& connection, const Request& request,
-                                HttpService& service) {
+                                std::string address, HttpService& service) {
   if (auto answer = service.gate ? service.gate(request) : std::nullopt) {
     return answer;
   }
@@ -123,7 +126,7 @@ std::optional<Response> refusal(mg_connection& connection, const Request& reques
       request.header("Accept").value_or("").find("text/html") != std::string_view::npos;
   return service.login->refusal({.method = request.method,
                                  .target = std::move(target),
-                                 .address = info.remote_addr,
+                                 .address = std::move(address),
                                  .authorization = request.header("Authorization"),
                                  .reader = is_page_load ? Reader::person : Reader::program},
                                 std::chrono::steady_clock::now());
@@ -162,7 +165,9 @@ int answer_request(mg_connection* connection) noexcept try {
   }
   Exchange exchange(*connection, *guard);
   Request request = exchange.head();
-  std::optional<Response> refused = refusal(*connection, request, service);
+  std::string address = mg_get_request_info(connection)->remote_addr;
+  take_forwarded(request, address, service.trusted_proxies);
+  std::optional<Response> refused = refusal(*connection, request, std::move(address), service);
   Response response = refused ? std::move(*refused) : answer_to(request, exchange, service.answer);
   const int status = response.status;
   exchange.send(request.method, std::move(response));
@@ -359,6 +364,7 @@ HttpServer::HttpServer(const HttpOptions& options, Answer answer, const AccessKe
   service.answer = std::move(answer);
   service.keys = keys;
   service.gate = std::move(gate);
+  service.trusted_proxies = options.trusted_proxies;
   service.login.emplace(options.password_file, options.own_password_file);
   server_->start(options);
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 namespace octurn {
 namespace {
@@ -31,10 +32,43 @@ std::string to_host_name(std::string_view host) {
   return std::string(name.ends_with('.') ? name.substr(0, name.size() - 1) : name);
 }
 
-bool is_address(const std::string& name) {
-  std::array<unsigned char, sizeof(in6_addr)> address{};
-  return ::inet_pton(AF_INET, name.c_str(), address.data()) == 1 ||
-         ::inet_pton(AF_INET6, name.c_str(), address.data()) == 1;
+using IpAddress = std::array<unsigned char, sizeof(in6_addr)>;
+
+/// The bytes of an IP address, those of IPv4 as mapped into IPv6; nothing if it is none.
+std::optional<IpAddress> to_ip_address(const std::string& text) {
+  IpAddress address{0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xFF, 0xFF};
+  constexpr std::size_t before_ipv4 = 12;
+  if (::inet_pton(AF_INET, text.c_str(), &address[before_ipv4]) == 1 ||
+      ::inet_pton(AF_INET6, text.c_str(), address.data()) == 1) {
+    return address;
+  }
+  return std::nullopt;
+}
+
+/// Whether a text is the address of a trusted proxy.
+bool is_trusted(const std::string& text, std::span<const std::string> trusted_proxies) {
+  const auto address = to_ip_address(text);
+  return address && std::ranges::any_of(trusted_proxies, [&](const std::string& proxy) {
+           return to_ip_address(proxy) == address;
+         });
+}
+
+/// Removes the last of the values that a header lists after commas, and returns it.
+std::string take_last(std::string_view& values) {
+  const std::size_t comma = values.rfind(',');
+  std::string_view last = values.substr(comma == std::string_view::npos ? 0 : comma + 1);
+  values = values.substr(0, comma == std::string_view::npos ? 0 : comma);
+  last.remove_prefix(std::min(last.find_first_not_of(' '), last.size()));
+  return std::string(last.substr(0, last.find_last_not_of(' ') + 1));
+}
+
+/// The last header of a name: that which the nearest proxy has written.
+std::string_view last_header(const Request& request, std::string_view name) {
+  std::string_view value;
+  for (const auto& [header, text] : request.headers) {
+    value = same_token(header, name) ? std::string_view(text) : value;
+  }
+  return value;
 }
 
 bool ends_with_domain(std::string_view name, std::string_view domain) {
@@ -43,7 +77,7 @@ bool ends_with_domain(std::string_view name, std::string_view domain) {
 }
 
 bool is_ours(const std::string& name, std::span<const std::string> host_names) {
-  return is_address(name) || (!name.empty() && name.find_first_of(".@[") == std::string::npos) ||
+  return to_ip_address(name) || (!name.empty() && name.find_first_of(".@[") == std::string::npos) ||
          std::ranges::any_of(local_domains,
                              [&](auto domain) { return ends_with_domain(name, domain); }) ||
          std::ranges::any_of(host_names, [&](const auto& ours) { return same_token(name, ours); });
@@ -70,6 +104,14 @@ bool has_type(const Request& request, std::string_view body_type) {
              : is_of_type(type.value_or(""), body_type) || (!type && !has_body(request));
 }
 
+/// What a proxy before the scanner has to be told if its host does not arrive.
+std::string proxy_hint(const Request& request) {
+  return request.header("X-Forwarded-Host")
+             ? "A proxy before it has to pass the header Host on as it is, or its address has to "
+               "stand in trusted_proxies in octurn.json."
+             : "A proxy before it has to pass the header Host on as it is.";
+}
+
 /// The page's address in the hotspot, as in image-build's hotspot.network.
 constexpr const char* page_address = "http://192.168.77.1/";
 
@@ -80,6 +122,25 @@ bool is_own_host(std::string_view host, std::span<const std::string> host_names)
 }
 
 }  // namespace
+
+void take_forwarded(Request& request, std::string& address,
+                    std::span<const std::string> trusted_proxies) {
+  if (!is_trusted(address, trusted_proxies)) {
+    return;
+  }
+  std::string_view hosts = last_header(request, "X-Forwarded-Host");
+  std::string_view clients = last_header(request, "X-Forwarded-For");
+  std::string client = address;
+  while (is_trusted(client, trusted_proxies) && !clients.empty()) {
+    client = take_last(clients);
+  }
+  if (to_ip_address(client)) {
+    address = std::move(client);
+  }
+  if (std::string host = take_last(hosts); !host.empty()) {
+    request.headers.insert(request.headers.begin(), {"Host", host});  // the first is in force
+  }
+}
 
 std::optional<Failure> refusal(const Request& request, std::span<const std::string> host_names,
                                std::string_view body_type) {
@@ -104,9 +165,7 @@ std::optional<Failure> refusal(const Request& request, std::span<const std::stri
     return Failure{.code = ErrorCode::wrong_origin,
                    .detail = "the request comes from " + std::string(*origin) + ", and is for " +
                              std::string(host),
-                   .hint =
-                       "Use the scanner's own page. A proxy before it has to pass the header "
-                       "Host on as it is."};
+                   .hint = "Use the scanner's own page. " + proxy_hint(request)};
   }
   if (request.method != "DELETE" && !has_type(request, body_type)) {
     return Failure{.code = ErrorCode::wrong_content_type,

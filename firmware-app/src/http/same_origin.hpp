@@ -11,6 +11,12 @@
 
 namespace octurn {
 
+/// Takes host and client of a request from X-Forwarded-Host and X-Forwarded-For if a trusted proxy
+/// has sent it. Each proxy adds its value at the end: the client is the last that is no such proxy.
+/// @param address  of the sender; becomes that of the client
+void take_forwarded(Request& request, std::string& address,
+                    std::span<const std::string> trusted_proxies);
+
 /// Whether a request may be answered at all, and may change something.
 ///
 /// Any page that is open in a browser can send requests here. Two rules keep other sites out. The

@@ -49,8 +49,12 @@ json to_json(const Webhook& webhook) {
 }
 
 json to_json(const Printer& printer) {
-  return {{"id", printer.id},   {"name", printer.name}, {"kind", to_string(printer.kind)},
-          {"url", printer.url}, {"user", printer.user}, {"key", printer.key}};
+  json body{{"id", printer.id},   {"name", printer.name}, {"kind", to_string(printer.kind)},
+            {"url", printer.url}, {"user", printer.user}, {"key", printer.key}};
+  if (!printer.fingerprint.empty()) {  // older versions refuse a file with this key
+    body["fingerprint"] = printer.fingerprint;
+  }
+  return body;
 }
 
 template <typename Entry>
@@ -137,7 +141,22 @@ Printer printer_from(JsonObject& object) {
   }
   printer.user = short_text(object, "user");
   printer.key = short_text(object, "key");
+  printer.fingerprint = fingerprint_from(object);
   return printer;
+}
+
+std::string fingerprint_from(JsonObject& object) {
+  constexpr std::string_view start = "sha256//";
+  constexpr std::size_t letters = 43;  // of 32 bytes in Base64, before the "="
+  constexpr std::string_view base64 =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  const std::string text = short_text(object, "fingerprint");
+  if (!text.empty() && (!text.starts_with(start) || !text.ends_with('=') ||
+                        text.find_first_not_of(base64, start.size()) != start.size() + letters ||
+                        text.size() != start.size() + letters + 1)) {
+    object.at("fingerprint").refuse("sha256// and 44 letters of Base64");
+  }
+  return text;
 }
 
 AddressBook::AddressBook(std::filesystem::path file)
@@ -211,6 +230,19 @@ Printer AddressBook::add(Printer printer) {
   next.printers.push_back(printer);
   store(std::move(next));
   return printer;
+}
+
+std::optional<Printer> AddressBook::trust(std::string_view id, const std::string& fingerprint) {
+  const std::lock_guard lock(mutex_);
+  Entries next = entries_;
+  const auto found = std::ranges::find(next.printers, id, &Printer::id);
+  if (found == next.printers.end()) {
+    return std::nullopt;
+  }
+  found->fingerprint = fingerprint;
+  Printer trusted = *found;
+  store(std::move(next));
+  return trusted;
 }
 
 bool AddressBook::remove_webhook(std::string_view id) {

@@ -34,12 +34,18 @@ struct Printer {
   std::string url = {};   ///< base address of its API
   std::string user = {};  ///< of PrusaLink, for HTTP Digest; empty: the key is sent in a header
   std::string key = {};   ///< API key, or the user's password; never sent to clients
+  /// Trusted one, as `OutgoingRequest::fingerprint`; empty: an authority has to sign.
+  std::string fingerprint = {};
 };
 
 /// Reads a webhook, or a printer, without its id.
 /// @throws Error "bad-settings"  that names the key, its value and what is allowed
 Webhook webhook_from(JsonObject& object);
 Printer printer_from(JsonObject& object);
+
+/// Reads the fingerprint of a printer's certificate; empty if the key is missing.
+/// @throws Error "bad-settings"
+std::string fingerprint_from(JsonObject& object);
 
 /// The webhooks and printers that users have added, stored in a file that only its owner can read.
 /// Thread-safe.
@@ -63,6 +69,10 @@ class AddressBook {
   ///               "disk-full", "write-failed"
   Webhook add(Webhook webhook);
   Printer add(Printer printer);
+
+  /// Trusts a certificate of a printer. @return the printer; nothing if there is none of that id
+  /// @throws Error "disk-full", "write-failed"
+  std::optional<Printer> trust(std::string_view id, const std::string& fingerprint);
 
   /// Removes a webhook or a printer. @return false if there is none of that id
   /// @throws Error "disk-full", "write-failed"

@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <string_view>
 #include <system_error>
 
 #include "outgoing/http_client_module.hpp"
@@ -15,6 +16,8 @@ namespace {
 constexpr std::size_t max_answer = std::size_t{64} << 10U;  // bytes
 constexpr long connect_seconds = 5;
 constexpr int poll_ms = 1000;
+// No server has this public key.
+constexpr const char* nobodys_fingerprint = "sha256//AAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAAA=";
 
 /// Deleter of a C library's object.
 template <auto release>
@@ -43,6 +46,20 @@ extern "C" std::size_t keep_answer(char* bytes, std::size_t size, std::size_t co
   return size * count;
 }
 
+/// Keeps the fingerprint that libcurl logs when it compares a public key with the expected one. It
+/// has no other way to tell it, and a TLS library is not linked for this alone.
+extern "C" int keep_fingerprint(CURL* /*easy*/, curl_infotype type, char* text, std::size_t size,
+                                void* fingerprint) noexcept {
+  constexpr std::string_view start = "public key hash: ";
+  std::string_view line(text, size);
+  line.remove_prefix(std::min(line.find_first_not_of(" \t"), size));
+  if (type == CURLINFO_TEXT && line.starts_with(start)) {
+    line.remove_prefix(start.size());
+    *static_cast<std::string*>(fingerprint) = line.substr(0, line.find_first_of(" \r\n"));
+  }
+  return 0;
+}
+
 /// A request in progress, with all objects that libcurl refers to.
 class Transfer {
  public:
@@ -51,6 +68,7 @@ class Transfer {
     set(CURLOPT_CUSTOMREQUEST, request.method.c_str());
     limit(request);
     set_credentials(request);
+    set_fingerprint(request.fingerprint);
     add_headers(request.headers);
     add_body(request);
     set(CURLOPT_WRITEFUNCTION, keep_answer);
@@ -59,6 +77,12 @@ class Transfer {
   }
 
   CURL* get() const { return easy_.get(); }
+
+  /// Whether it ended since the server's certificate, or its public key, is not trusted.
+  bool is_untrusted() const { return is_untrusted_; }
+
+  /// Of the server, once its public key was compared with the request's.
+  const std::string& fingerprint() const { return fingerprint_; }
 
   /// The reason why the request cannot be sent; empty if it can.
   const std::string& trouble() const { return answer_.trouble; }
@@ -75,6 +99,9 @@ class Transfer {
       answer_.trouble = "it was stopped";
     } else if (*result != CURLE_OK) {
       answer_.trouble = reason_[0] != '\0' ? reason_.data() : curl_easy_strerror(*result);
+      is_untrusted_ = *result == CURLE_PEER_FAILED_VERIFICATION ||
+                      *result == CURLE_SSL_CACERT_BADFILE ||
+                      *result == CURLE_SSL_PINNEDPUBKEYNOTMATCH;
     } else {
       long status = 0;
       curl_easy_getinfo(easy_.get(), CURLINFO_RESPONSE_CODE, &status);
@@ -106,6 +133,19 @@ class Transfer {
       set(CURLOPT_HTTPAUTH, CURLAUTH_DIGEST);
       set(CURLOPT_USERNAME, request.user.c_str());
       set(CURLOPT_PASSWORD, request.password.c_str());
+    }
+  }
+
+  void set_fingerprint(const std::string& fingerprint) {
+    if (!fingerprint.empty()) {  // decides alone, in place of authorities and names
+      set(CURLOPT_PINNEDPUBLICKEY, fingerprint.c_str());
+      set(CURLOPT_SSL_VERIFYPEER, 0L);
+      set(CURLOPT_SSL_VERIFYHOST, 0L);
+    }
+    if (fingerprint == nobodys_fingerprint) {
+      set(CURLOPT_VERBOSE, 1L);
+      set(CURLOPT_DEBUGFUNCTION, keep_fingerprint);
+      set(CURLOPT_DEBUGDATA, &fingerprint_);
     }
   }
 
@@ -154,11 +194,13 @@ class Transfer {
   }
 
   File file_ = {};
+  std::string fingerprint_ = {};
   Easy easy_;
   Lines lines_ = {};
   Form form_ = {};  // after easy_, so that it is freed first
   std::array<char, CURL_ERROR_SIZE> reason_{};
   OutgoingAnswer answer_ = {};
+  bool is_untrusted_ = false;
 };
 
 /// The result of the transfer; nothing if it has not ended.
@@ -180,13 +222,8 @@ std::string get_part(CURLU* address, CURLUPart part) {
   return found;
 }
 
-OutgoingAnswer ask_by_curl(const OutgoingRequest& request, const std::stop_token& stop,
-                           const std::function<void(std::uint64_t)>& on_sent) {
-  begin_with_curl();
-  Transfer transfer(request);
-  if (!transfer.trouble().empty()) {
-    return {.trouble = transfer.trouble()};
-  }
+OutgoingAnswer run(Transfer& transfer, const std::stop_token& stop,
+                   const std::function<void(std::uint64_t)>& on_sent) {
   const Multi multi(curl_multi_init());
   curl_multi_add_handle(multi.get(), transfer.get());
   const std::stop_callback wake(stop, [&] { curl_multi_wakeup(multi.get()); });
@@ -205,6 +242,27 @@ OutgoingAnswer ask_by_curl(const OutgoingRequest& request, const std::stop_token
                               ? transfer.finish(find_result(multi.get()))
                               : OutgoingAnswer{.trouble = curl_multi_strerror(failed)};
   curl_multi_remove_handle(multi.get(), transfer.get());
+  return answer;
+}
+
+/// The fingerprint of a server's public key. Nothing is sent to it, as it has not the expected one.
+std::string find_fingerprint(const std::string& url, const std::stop_token& stop) {
+  Transfer transfer({.url = url, .fingerprint = nobodys_fingerprint});
+  run(transfer, stop, {});
+  return transfer.fingerprint();
+}
+
+OutgoingAnswer ask_by_curl(const OutgoingRequest& request, const std::stop_token& stop,
+                           const std::function<void(std::uint64_t)>& on_sent) {
+  begin_with_curl();
+  Transfer transfer(request);
+  if (!transfer.trouble().empty()) {
+    return {.trouble = transfer.trouble()};
+  }
+  OutgoingAnswer answer = run(transfer, stop, on_sent);
+  if (transfer.is_untrusted()) {
+    answer.fingerprint = find_fingerprint(request.url, stop);
+  }
   return answer;
 }
 

@@ -25,6 +25,9 @@ struct OutgoingRequest {
   std::vector<std::pair<std::string, std::string>> fields = {};  ///< further ones of the form
   std::string user = {};                                         ///< for HTTP Digest; empty: none
   std::string password = {};
+  /// SHA-256 of the one public key that the server may have over TLS, whoever signed it, as
+  /// "sha256//BASE64". Empty: any whose certificate an authority of the system signed.
+  std::string fingerprint = {};
   std::chrono::milliseconds time_limit = std::chrono::seconds(10);  ///< for the whole exchange
   std::chrono::seconds still_limit{30};                             ///< in which no byte moves
 };
@@ -34,6 +37,9 @@ struct OutgoingAnswer {
   int status = 0;            ///< of HTTP; 0: there was no answer
   std::string body = {};     ///< its first 64 KiB
   std::string trouble = {};  ///< readable reason why there was no answer
+  /// The reason is the server's certificate, whose public key has this fingerprint. Nothing was
+  /// sent to it.
+  std::string fingerprint = {};
 };
 
 /// Sends a request and waits for the answer. Gives up if connecting takes 5 s.

@@ -16,7 +16,8 @@ using nlohmann::json;
 constexpr std::chrono::hours upload_limit{1};
 
 OutgoingRequest authorized(const Printer& printer, std::string method, const std::string& path) {
-  OutgoingRequest request{.method = std::move(method), .url = printer.url + path};
+  OutgoingRequest request{
+      .method = std::move(method), .url = printer.url + path, .fingerprint = printer.fingerprint};
   if (!printer.user.empty()) {
     request.user = printer.user;
     request.password = printer.key;
@@ -79,6 +80,23 @@ std::string reason_in(const std::string& body) {
   }
   reason->resize(length);
   return is_one_line(*reason) ? *reason : "";
+}
+
+/// The reason why no request reached the printer.
+PrinterTrouble unreachable(const Printer& printer, const OutgoingAnswer& answer) {
+  if (answer.fingerprint.empty()) {
+    return {program_name(printer.kind) + " cannot be reached: " + answer.trouble,
+            "Check that it is on and in this network, and its address in the settings."};
+  }
+  if (printer.fingerprint.empty()) {
+    return {"no authority has signed the printer's certificate, whose fingerprint is \"" +
+                answer.fingerprint + "\"",
+            "Trust it if this is your printer. Nothing was sent to it yet.", answer.fingerprint};
+  }
+  return {"the printer's certificate is not the trusted one: its fingerprint is \"" +
+              answer.fingerprint + "\"",
+          "If the printer was set up anew, remove it in the settings and add it again. Otherwise "
+          "something else answers at its address. Nothing was sent to it."};
 }
 
 constexpr int bad_request = 400;
@@ -162,9 +180,7 @@ std::optional<PrinterTrouble> trouble_in(const Printer& printer, const OutgoingA
   }
   switch (answer.status) {
     case 0:
-      return PrinterTrouble{
-          program + " cannot be reached: " + answer.trouble,
-          "Check that it is on and in this network, and its address in the settings."};
+      return unreachable(printer, answer);
     case 401:
     case 403:
       return PrinterTrouble{answered + ": it does not accept the key",

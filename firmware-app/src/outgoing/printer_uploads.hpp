@@ -17,6 +17,7 @@ namespace octurn {
 struct PrinterTrouble {
   std::string detail = {};
   std::string hint = {};
+  std::string fingerprint = {};  ///< of a certificate that can be trusted; empty: none can
 };
 
 /// A file's name for a print server: without what it would take as a folder, or as hidden.

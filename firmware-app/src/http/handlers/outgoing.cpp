@@ -33,14 +33,15 @@ json to_json(const Printer& printer) {
           {"name", printer.name},
           {"kind", to_string(printer.kind)},
           {"address", to_origin(printer.url)},
-          {"has_key", !printer.key.empty()}};
+          {"has_key", !printer.key.empty()},
+          {"fingerprint", printer.fingerprint}};
 }
 
 json to_json(const PrinterUpload& upload) {
   return {{"scan", upload.scan},         {"printer", upload.printer},
           {"file", upload.file},         {"state", to_string(upload.state)},
           {"progress", upload.progress}, {"detail", upload.trouble.detail},
-          {"hint", upload.trouble.hint}};
+          {"hint", upload.trouble.hint}, {"fingerprint", upload.trouble.fingerprint}};
 }
 
 Response created(const json& body, const std::string& place) {
@@ -118,6 +119,21 @@ Response add_printer(App& app, const Request& request) {
   printer = app.addresses.add(std::move(printer));
   log::info("outgoing", "a printer was added");
   return created(to_json(printer), "/api/v1/printers/");
+}
+
+Response trust_printer(App& app, const Request& request, std::string_view id) {
+  const json body = parse_body(request);
+  JsonObject object(body, ErrorCode::bad_settings, "");
+  object.at("fingerprint");
+  const std::string fingerprint = fingerprint_from(object);
+  object.refuse_unread();
+  const auto printer = app.addresses.trust(id, fingerprint);
+  if (!printer) {
+    throw_not_found("printer " + std::string(id), "/api/v1/printers");
+  }
+  log::info("outgoing", fingerprint.empty() ? "no certificate of a printer is trusted any more"
+                                            : "a printer's certificate is trusted");
+  return json_response(to_json(*printer));
 }
 
 Response remove_printer(App& app, std::string_view id) {

@@ -26,6 +26,9 @@ Response list_printers(App& app);
 /// Adds the printer of the body. @throws Error "bad-json", "bad-settings", "disk-full"
 Response add_printer(App& app, const Request& request);
 
+/// Trusts the certificate with the body's fingerprint, or none. @throws Error "not-found" as well
+Response trust_printer(App& app, const Request& request, std::string_view id);
+
 /// @throws Error "not-found"
 Response remove_printer(App& app, std::string_view id);
 

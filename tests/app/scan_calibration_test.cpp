@@ -134,8 +134,9 @@ TEST_F(ScanCalibrationTest, KeepsAPoseThatAnEarlierScanHasSolved) {
       << mm_from_metres(report_->shift) << " mm aside, " << mm_from_metres(report_->lift)
       << " mm up, with a sigma of " << mm_from_metres(report_->position_sigma) << " mm, "
       << degrees_from_radians(report_->tilt) << " degrees tilted, with a sigma of "
-      << degrees_from_radians(report_->direction_sigma) << " degrees; other optics: "
-      << report_->optics_differ << "; " << report_->accepted << ' ' << report_->reason;
+      << degrees_from_radians(report_->direction_sigma)
+      << " degrees; other optics: " << report_->optics_differ << "; " << report_->accepted << ' '
+      << report_->reason;
   EXPECT_FALSE(read_scan(folder_.path()).solved);
 }
 

@@ -38,7 +38,7 @@ OpticsRecord some_optics() {
 
 class ScanOptics : public ScannerTest {
  protected:
-  /// Without the pattern, which without a map would keep optics from being solved, and without
+  /// Without the pattern, which without a map would hide all but the focal length, and without
   /// noise, for which the simulated object is too simple.
   static RigOptions wrong_rig() {
     RigOptions options{.sensor_uri = "octurn-simulator://?speed=50&pattern=0&noise=0", .speed = 50};

@@ -35,7 +35,7 @@ constexpr double max_position_sigma = 0.0006;  // metres
 // A larger sigma is accepted where the correction is large: a share of how far the pose moves.
 constexpr double worthwhile_sigma = 0.05;
 constexpr double worthwhile_direction_sigma = 0.2;  // a share of how far the axis tilts
-constexpr double max_direction_sigma_deg = 0.2;  // 0.35 mm at a height of 100 mm
+constexpr double max_direction_sigma_deg = 0.2;     // 0.35 mm at a height of 100 mm
 constexpr double max_after = 0.0012;  // metres; a Kinect at 0.65 m leaves 0.5 to 0.7 mm
 // The median residual may grow by this factor: the solver minimises weighted squares instead.
 constexpr double may_worsen = 1.02;
@@ -66,6 +66,8 @@ constexpr double agreeing_sigmas = 3;
 
 // Mahalanobis distance, squared: beyond it the optics are applied.
 constexpr double min_significance = 20;
+// Of the focal length alone, in spite of a pattern: two sigma.
+constexpr double min_focal_significance = 4;
 // No Kinect is known to be further off: the depth images are those of another sensor, or scaled.
 constexpr double max_focal_error = 0.06;
 
@@ -282,9 +284,8 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
     return "the axis is uncertain by " + mm_text(report.position_sigma, text_digits) +
            ": stand another object on the platform";
   }
-  if (report.direction_sigma >
-      std::max(radians_from_degrees(max_direction_sigma_deg),
-               worthwhile_direction_sigma * report.tilt)) {
+  if (report.direction_sigma > std::max(radians_from_degrees(max_direction_sigma_deg),
+                                        worthwhile_direction_sigma * report.tilt)) {
     return "the axis is uncertain by " + degrees_text(report.direction_sigma, text_digits) +
            ": stand another object on the platform";
   }
@@ -302,11 +303,13 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   return {};
 }
 
-/// Whether the optics may be solved: nothing slipped or moved, and the sensor is even. A pattern
-/// that no map has corrected moves the principal point by up to 12 pixels.
-bool shows_optics(const CalibrationTurn& turn, const CalibrationReport& report, bool is_uneven) {
-  const bool is_solvable = !turn.optics || turn.optics->sigma.fx > 0;
-  return is_solvable && !is_uneven && all_stand_as_told(report);
+/// Whether the optics may be solved: nothing slipped or moved. A pattern that no map has corrected
+/// hides what is better known, and in few stops it looks like other optics.
+/// @param pattern  as of `solve_optics`
+bool shows_optics(const CalibrationTurn& turn, const CalibrationReport& report, double pattern) {
+  const bool is_solvable = pattern > 0 ? !turn.optics && turn.angles.size() > few_stops
+                                       : !turn.optics || turn.optics->sigma.fx > 0;
+  return is_solvable && all_stand_as_told(report);
 }
 
 struct TakenOptics {
@@ -315,20 +318,22 @@ struct TakenOptics {
 };
 
 /// Solves optics and pose together, and takes both if the turn knows the optics better.
+/// @param pattern  as of `solve_optics`
 std::optional<TakenOptics> take_optics(CalibrationReport& report, TurnViews& views,
                                        const TurnReader& reader, const CalibrationTurn& turn,
-                                       int threads) {
+                                       double pattern, int threads) {
   const auto solved = solve_optics(views, reader.samples(), reader.plane(), turn,
-                                   report.platform_from_sensor, threads);
+                                   report.platform_from_sensor, pattern, threads);
   if (!solved) {
     return std::nullopt;
   }
+  const bool are_significant =
+      solved->significance >= (pattern > 0 ? min_focal_significance : min_significance);
   report.optics = solved->optics;
   const double error = std::abs(solved->optics.value.fx / turn.intrinsics.fx - 1);
   const bool is_settled = solved->axis.last_step <= max_step(solved->axis.position_sigma());
   // Known optics are better than a turn's that did not settle.
-  if ((solved->significance < min_significance && !solved->is_better) ||
-      (turn.optics && !is_settled)) {
+  if ((!are_significant && !solved->is_better) || (turn.optics && !is_settled)) {
     return std::nullopt;
   }
   if (error > max_focal_error) {
@@ -338,11 +343,12 @@ std::optional<TakenOptics> take_optics(CalibrationReport& report, TurnViews& vie
   report.optics_differ = true;
   report.platform_from_sensor = solved->axis.platform_from_sensor;
   report.position_sigma = solved->axis.position_sigma();
-  report.direction_sigma = solved->axis.direction_sigma();
+  if (pattern == 0) {  // else it would refuse a pose that is no worse than the one before
+    report.direction_sigma = solved->axis.direction_sigma();
+  }
   const std::vector<double> as_told(turn.angles.size(), 0.0);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
-  return TakenOptics{.last_step = solved->axis.last_step,
-                     .are_significant = solved->significance >= min_significance};
+  return TakenOptics{.last_step = solved->axis.last_step, .are_significant = are_significant};
 }
 
 CalibrationReport refused(CalibrationReport report, const std::string& reason) {
@@ -418,10 +424,11 @@ CalibrationReport calibrate(const CalibrationTurn& turn, int threads) {
   report.before = median_residual(views, turn.platform_from_sensor, as_told, threads);
   report.after = median_residual(views, report.platform_from_sensor, as_told, threads);
   double last_step = solution->last_step;
-  const auto optics = shows_optics(turn, report, is_uneven)
-                          ? take_optics(report, views, reader, turn, threads)
+  const double pattern = is_uneven ? *surface.unevenness : 0;
+  const auto optics = shows_optics(turn, report, pattern)
+                          ? take_optics(report, views, reader, turn, pattern, threads)
                           : std::nullopt;
-  if (optics) {
+  if (optics && !is_uneven) {  // the pattern moves the axis by far more than a last step
     last_step = optics->last_step;
   }
   compare_with_told(report, turn.platform_from_sensor);

@@ -15,7 +15,7 @@ struct OpticsSolution {
   SolvedOptics optics = {};
   AxisSolution axis = {};  ///< its covariance is that with these optics
   /// Squared Mahalanobis distance of the optics from their prior: chi^2 of 4 degrees if these are
-  /// right.
+  /// right, of one if only the focal length was solved.
   double significance = 0;
   bool is_better = false;  ///< far smaller sigmas than those of known optics
 };
@@ -39,10 +39,14 @@ struct OpticsSolution {
 /// @param plane  of the platform, with the turn's intrinsics
 /// @param turn   its intrinsics, and its optics if they are known
 /// @param start  solved with the turn's intrinsics: optical frame to platform frame
+/// @param pattern  of a sensor without a map, as the platform shows it, units of disparity: only
+/// the
+///                 focal length is solved. 0: a map corrects it, or there is none
 /// @return nothing if too few readings of the object have a partner
 std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSamples& samples,
                                            const PlatformPlane& plane, const CalibrationTurn& turn,
-                                           const Eigen::Isometry3d& start, int threads);
+                                           const Eigen::Isometry3d& start, double pattern,
+                                           int threads);
 
 /// The finding "optics", of optics that were solved and are not applied.
 CalibrationFinding describe_unused_optics(const SensorOptics& solved, const Intrinsics& used);

@@ -302,15 +302,37 @@ TEST(Calibrate, KeepsOpticsThatAreRight) {
 }
 
 // A sensor map from one wall leaves an error of some 0.1 units of disparity.
-TEST(Calibrate, SolvesOpticsOfAnUnevenSensorOnlyWithItsMap) {
-  const CalibrationTurn seen = rendered_turn(figure(), 8);
-  for (const bool has_map : {true, false}) {
-    CalibrationTurn turn = with_pattern(seen, has_map ? 0.1 : 0.8);
-    turn.has_sensor_map = has_map;
-    EXPECT_FALSE(calibrate(turn).optics_differ) << has_map;
-    turn.intrinsics = told_lens(1.05);
-    EXPECT_EQ(calibrate(turn).optics_differ, has_map);
-  }
+TEST(Calibrate, SolvesOpticsOfAnUnevenSensorWithItsMap) {
+  CalibrationTurn turn = with_pattern(rendered_turn(figure(), 8), 0.1);
+  turn.has_sensor_map = true;
+  EXPECT_FALSE(calibrate(turn).optics_differ);
+  turn.intrinsics = told_lens(1.05);
+  EXPECT_TRUE(calibrate(turn).optics_differ);
+}
+
+// A pattern moves the principal point by up to 12 pixels, and the focal length by a per cent.
+TEST(Calibrate, SolvesOnlyTheFocalLengthOfAnUnevenSensorWithoutAMap) {
+  CalibrationTurn turn = with_pattern(rendered_turn(figure(), 24), 0.4);
+  turn.intrinsics = told_lens(590.5 / 575.8, 308, 234);
+  const CalibrationReport report = calibrate(turn);
+  ASSERT_TRUE(report.accepted) << report.reason;
+  ASSERT_TRUE(report.optics_differ);
+  const SensorOptics& seen = report.optics->value;
+  const SensorOptics& sigma = report.optics->sigma;
+  EXPECT_NEAR(seen.fx, Intrinsics().fx, 2 * sigma.fx);
+  EXPECT_GT(sigma.fx, 0.008 * Intrinsics().fx);
+  EXPECT_NEAR(seen.cx, turn.intrinsics.cx, 1e-3);
+  EXPECT_NEAR(seen.cy, turn.intrinsics.cy, 1e-3);
+  EXPECT_NEAR(seen.k1, 0, 1e-5);
+  EXPECT_EQ(sigma.cx, 8) << "as known as before";
+}
+
+TEST(Calibrate, KeepsOpticsThatAreRightOfAnUnevenSensorWithoutAMap) {
+  const CalibrationReport report = calibrate(with_pattern(rendered_turn(figure(), 24), 0.4));
+  ASSERT_TRUE(report.accepted) << report.reason;
+  ASSERT_TRUE(report.optics);
+  EXPECT_NEAR(report.optics->value.fx, Intrinsics().fx, 2 * report.optics->sigma.fx);
+  EXPECT_FALSE(report.optics_differ);
 }
 
 /// Optics that were known to a focal length's sigma of `share`, and to `pixels` of the centre.
@@ -318,6 +340,17 @@ SolvedOptics known_optics(const Intrinsics& lens, double share, double pixels) {
   const double focal = share * lens.fx;
   return {.value = {.fx = lens.fx, .fy = lens.fy, .cx = lens.cx, .cy = lens.cy, .k2 = 0.01},
           .sigma = {.fx = focal, .fy = focal, .cx = pixels, .cy = pixels, .k1 = 0.02, .k2 = 0.1}};
+}
+
+TEST(Calibrate, SolvesNoOpticsOfAnUnevenSensorThatAreKnownOrSeenFromFewStops) {
+  CalibrationTurn turn = with_pattern(rendered_turn(figure(), 7));
+  turn.intrinsics = told_lens(590.5 / 575.8);
+  EXPECT_FALSE(calibrate(turn).optics);
+  turn = with_pattern(rendered_turn(figure(), 8));
+  turn.intrinsics = told_lens(590.5 / 575.8);
+  EXPECT_TRUE(calibrate(turn).optics);
+  turn.optics = known_optics(turn.intrinsics, 0.005, 8);
+  EXPECT_FALSE(calibrate(turn).optics);
 }
 
 TEST(Calibrate, SolvesNoOpticsThatAreKnownWithoutSigmas) {

@@ -312,6 +312,7 @@ export function screenOf(state) {
       hasChoice: has3D,
       model: hasModel && chosen && shown?.model ? {...shown.model, url: pictureUrl(chosen, buildShown(state, chosen))} : null,
       paint: /** @type {const} */ (chosen?.has_colours ? 'colours' : chosen?.has_views ? 'views' : null),
+      isSolid: shown?.settings.method === 'solid',
       object: chosen?.id ?? '',
       places: details?.verdict?.reasons.find(({isShown}) => isShown)?.places ?? [],
       growing,

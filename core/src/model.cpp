@@ -9,6 +9,7 @@
 #include "octurn/error.hpp"
 #include "octurn/stl.hpp"
 #include "octurn/tiles.hpp"
+#include "octurn/units.hpp"
 
 namespace octurn {
 namespace {
@@ -46,6 +47,72 @@ SnapshotSource counted(SnapshotSource snapshots,
             progress(BuildStep::adding, std::min(++*done, count));
             return snapshot;
           }};
+}
+
+/// A reconstruction whose surface is laid and scaled.
+class PlacedReconstructor final : public Reconstructor {
+ public:
+  PlacedReconstructor(std::unique_ptr<Reconstructor> object, const ModelEdits& edits)
+      : object_(std::move(object)), model_from_object_(model_from_object(edits)) {}
+
+  void add(const Snapshot& snapshot, const std::stop_token& stop) override {
+    object_->add(snapshot, stop);
+  }
+  void add(const SnapshotSource& snapshots, const std::stop_token& stop) override {
+    object_->add(snapshots, stop);
+  }
+  SurfaceCount surface(const SnapshotSource& snapshots, const FacetSink& sink,
+                       const std::stop_token& stop) override {
+    std::vector<Facet> placed;
+    return object_->surface(
+        snapshots,
+        [&](std::span<const Facet> facets) {
+          placed.assign(facets.begin(), facets.end());
+          std::ranges::for_each(placed, [this](Facet& facet) { place(facet); });
+          sink(placed);
+        },
+        stop);
+  }
+  SurfaceCount count(const SnapshotSource& snapshots, const std::stop_token& stop) override {
+    return object_->count(snapshots, stop);
+  }
+  void preview(double leaf_size, std::uint64_t max_facets, const FacetSink& sink,
+               const std::stop_token& stop) const override {
+    object_->preview(leaf_size, max_facets, sink, stop);
+  }
+
+ private:
+  /// Facets' members are not aligned, so they are copied.
+  void place(Facet& facet) const {
+    facet.normal = floats((model_from_object_.linear() * vector(facet.normal)).normalized());
+    auto corners = facet.corners;
+    for (auto& corner : corners) {
+      corner =
+          floats(mm_from_metres(1) * (model_from_object_ * (metres_from_mm(1) * vector(corner))));
+    }
+    facet.corners = corners;
+  }
+
+  static Eigen::Vector3d vector(std::array<float, 3> from) {
+    return Eigen::Map<const Eigen::Vector3f>(from.data()).cast<double>();
+  }
+  static std::array<float, 3> floats(const Eigen::Vector3d& from) {
+    return {static_cast<float>(from.x()), static_cast<float>(from.y()),
+            static_cast<float>(from.z())};
+  }
+
+  std::unique_ptr<Reconstructor> object_;
+  Eigen::Affine3d model_from_object_;
+};
+
+std::unique_ptr<Reconstructor> make_model_reconstructor(const ModelInput& input, bool is_tiled) {
+  const ReconstructOptions& options = input.options;
+  auto object =
+      is_tiled ? make_tiled_reconstructor(options, input.spool) : make_reconstructor(options);
+  if (options.edits.move()) {
+    return std::make_unique<PlacedReconstructor>(std::move(object), options.edits);
+  }
+  return object;
 }
 
 /// Solves the scan's pose if it has none that is solved, and finds how the object moved.
@@ -120,12 +187,11 @@ BuiltModel build_model(ModelInput input, const std::stop_token& stop) {
   const ReconstructOptions& options = input.options;
   fit_to_scan(input.options, scan);
   const bool is_tiled = has_free_poses(scan);
-  const std::unique_ptr<Reconstructor> reconstructor =
-      is_tiled ? make_tiled_reconstructor(options, input.spool) : make_reconstructor(options);
+  const auto reconstructor = make_model_reconstructor(input, is_tiled);
   std::optional<PoseChecks> checks;
   SnapshotSource stored = input.snapshots(scan);
   SnapshotSource added = counted(stored, input.progress);
-  if (input.is_judged && !is_tiled) {
+  if (input.is_judged && !is_tiled && options.edits == ModelEdits{}) {
     checks.emplace(options.placements, options.clip, scan.shots.size(), sensor_traits(scan));
     added = checked_snapshots(std::move(added), *checks);
   }

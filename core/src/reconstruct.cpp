@@ -1,9 +1,11 @@
 #include "octurn/reconstruct.hpp"
 
+#include <cmath>
 #include <memory>
 
 #include "bennett/bennett_reconstructor.hpp"
 #include "laser/line_strip.hpp"
+#include "octurn/error.hpp"
 #include "octurn/scan_folder.hpp"
 #include "tsdf/solid_reconstructor.hpp"
 
@@ -59,9 +61,60 @@ std::optional<Method> method_named(std::string_view name) {
 
 std::string_view to_string(Parts parts) { return parts == Parts::main ? "main" : "all"; }
 
+Eigen::Affine3d model_from_object(const ModelEdits& edits) {
+  Eigen::Affine3d model_from_object = Eigen::Affine3d::Identity();
+  model_from_object.scale(edits.scale);
+  if (edits.lay) {
+    // Rodrigues' formula for the rotation of `down` to -Z.
+    const Eigen::Vector3d axis = edits.lay->down.cross(-Eigen::Vector3d::UnitZ());
+    const double cosine = -edits.lay->down.z();
+    Eigen::Matrix3d cross;
+    cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
+    const bool is_turned_over = cosine < -1 + 1e-9;
+    const Eigen::Matrix3d turn =
+        is_turned_over
+            ? Eigen::Matrix3d(Eigen::Vector3d(1, -1, -1).asDiagonal())
+            : Eigen::Matrix3d(Eigen::Matrix3d::Identity() + cross + cross * cross / (1 + cosine));
+    model_from_object.linear() *= turn;
+    model_from_object.translation() = -model_from_object.linear() * edits.lay->point;
+  }
+  return model_from_object;
+}
+
+namespace {
+
+/// @throws Error "bad-settings"
+void expect_possible(const ModelEdits& edits) {
+  const auto refuse = [](const char* what) { throw Error(ErrorCode::bad_settings, what); };
+  const auto is_unit = [](const Eigen::Vector3d& v) { return std::abs(v.norm() - 1) < 1e-6; };
+  for (const CutPlane& cut : edits.cuts) {
+    if (!is_unit(cut.normal) || !std::isfinite(cut.distance)) {
+      refuse("cuts: a normal must be of length one, and a distance finite");
+    }
+  }
+  for (const ErasedBall& ball : edits.erased) {
+    if (!ball.centre.allFinite() || !std::isfinite(ball.radius) || ball.radius <= 0) {
+      refuse("erased: a centre must be finite, and a radius above 0");
+    }
+  }
+  if (edits.lay && !(is_unit(edits.lay->down) && edits.lay->point.allFinite())) {
+    refuse("lay: the direction must be of length one, and the point finite");
+  }
+  if (!std::isfinite(edits.scale) || edits.scale <= 0) {
+    refuse("scale: must be above 0");
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<Reconstructor> make_reconstructor(const ReconstructOptions& options) {
+  expect_possible(options.edits);
   switch (options.method) {
     case Method::intersection:
+      if (options.edits.change_shape() || options.solid.max_triangles) {
+        throw Error(ErrorCode::bad_settings, "the method intersection cuts and erases nothing",
+                    "Choose the method solid.");
+      }
       return std::make_unique<BennettReconstructor>(options);
     case Method::solid:
       break;

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "settings/field.hpp"
+#include "store/job.hpp"
 #include "support/temporary_folder.hpp"
 #include "support/thrown_error.hpp"
 #include "voxel/checked_levels.hpp"
@@ -153,6 +154,51 @@ TEST(ScanSettings, OfARequestHaveNarrowerRangesThanThoseOfAFile) {
     EXPECT_EQ(code_thrown_by([&] { parsed(given.dump().c_str()); }), "bad-settings") << given;
     EXPECT_NO_THROW(stored(given)) << given;
   }
+}
+
+TEST(BuildSettings, ReadEditsAndWriteThem) {
+  const json given = json::parse(R"({"cut_mm": [[0, 3, 4, 50], [0, 0, -1, -5]],
+      "erase_mm": [[1, 2, 3, 4]], "lay_mm": [0, 0, 2, 1, 2, 70], "scale": 0.5,
+      "max_triangles": 5000})");
+  const BuildSettings settings = build_settings_from(given, {});
+  const ModelEdits& edits = settings.edits.edits;
+  ASSERT_EQ(edits.cuts.size(), 2U);
+  EXPECT_TRUE(edits.cuts[0].normal.isApprox(Eigen::Vector3d(0, 0.6, 0.8)));
+  EXPECT_DOUBLE_EQ(edits.cuts[0].distance, 0.05);
+  EXPECT_EQ(edits.erased,
+            std::vector({ErasedBall{.centre = {0.001, 0.002, 0.003}, .radius = 0.004}}));
+  EXPECT_EQ(edits.lay, (LaidSide{.down = Eigen::Vector3d::UnitZ(), .point = {0.001, 0.002, 0.07}}));
+  const json written = to_json(settings);
+  EXPECT_EQ(written["lay_mm"], json::parse("[0.0, 0.0, 1.0, 1.0, 2.0, 70.0]"));
+  EXPECT_EQ(to_json(build_settings_from(written, {})), written);
+  const json unchanged = to_json(BuildSettings{});
+  EXPECT_EQ(unchanged["cut_mm"], json::array());
+  EXPECT_EQ(unchanged["lay_mm"], nullptr);
+  EXPECT_EQ(to_json(build_settings_from(unchanged, settings)), unchanged);
+}
+
+TEST(BuildSettings, RefuseEditsThatAreImpossible) {
+  for (const char* const wrong :
+       {R"({"cut_mm": [0, 0, 1, 50]})", R"({"cut_mm": [[0, 0, 1]]})",
+        R"({"cut_mm": [[0, 0, 0, 5]]})", R"({"cut_mm": [[0, 0, 1, 1e9]]})", R"({"cut_mm": null})",
+        R"({"erase_mm": [[0, 0, 0, 0]]})", R"({"lay_mm": [0, 0, 0, 1, 2, 3]})",
+        R"({"lay_mm": [0, 0, 1]})", R"({"scale": 0})", R"({"scale": -1})",
+        R"({"max_triangles": 1})", R"({"method": "intersection", "cut_mm": [[0, 0, 1, 50]]})",
+        R"({"method": "intersection", "erase_mm": [[0, 0, 1, 50]]})",
+        R"({"method": "intersection", "max_triangles": 5000})"}) {
+    EXPECT_EQ(code_thrown_by([&] { build_settings_from(json::parse(wrong), {}); }), "bad-settings")
+        << wrong;
+  }
+  EXPECT_NO_THROW(build_settings_from(
+      json::parse(R"({"method": "intersection", "cut_mm": [], "scale": 2, "lay_mm": null})"), {}));
+  json many = json::array();
+  for (int i = 0; i <= 200; ++i) {
+    many.push_back({0, 0, 1, i});
+  }
+  EXPECT_EQ(code_thrown_by([&] {
+              build_settings_from(json{{"cut_mm", many}}, {});
+            }),
+            "bad-settings");
 }
 
 TEST(ScanSettings, RefuseAKeyThatIsNone) {

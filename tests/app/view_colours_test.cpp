@@ -106,10 +106,42 @@ TEST_F(ViewColours, CountNoSnapshotInWhichSomethingElseIsSeenThere) {
   EXPECT_EQ(std::ranges::count(colours, colours_of_views[0]), std::ssize(colours));
 }
 
+TEST_F(ViewColours, OfALaidModelAreThoseOfTheObjectAsItStood) {
+  const ModelEdits edits{
+      .lay = LaidSide{.down = Vector3d(0.6, 0, 0.8), .point = {0.01, 0.02, 0.03}}, .scale = 2.5};
+  const Eigen::Affine3d laid = model_from_object(edits);
+  std::vector<Facet> facets;
+  model().read([&](std::span<const Facet> block) {
+    for (Facet facet : block) {
+      auto corners = facet.corners;
+      for (auto& corner : corners) {
+        const Vector3d place =
+            laid *
+            (Eigen::Map<const Eigen::Vector3f>(corner.data()).cast<double>() * metres_from_mm(1));
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+          corner[axis] = static_cast<float>(mm_from_metres(place[static_cast<Eigen::Index>(axis)]));
+        }
+      }
+      facet.corners = corners;
+      facets.push_back(facet);
+    }
+  });
+  put(folder_.path() / "Laid.stl", stl_text(facets));
+  const auto as_scanned = view_colours(model(), whole_ball_scan(8));
+  const auto colours =
+      view_colours(FacetFile(folder_.path() / "Laid.stl"), whole_ball_scan(8), edits);
+  ASSERT_EQ(colours.size(), as_scanned.size());
+  std::size_t equal = 0;
+  for (std::size_t i = 0; i < colours.size(); ++i) {
+    equal += colours[i] == as_scanned[i] ? 1 : 0;
+  }
+  EXPECT_GT(equal, colours.size() * 99 / 100);  // rounding decides at the limits of a view
+}
+
 TEST_F(ViewColours, EndWhenTheyAreStopped) {
   std::stop_source stop;
   stop.request_stop();
-  EXPECT_THROW(view_colours(model(), ball_scan(2), stop.get_token()), Stopped);
+  EXPECT_THROW(view_colours(model(), ball_scan(2), {}, stop.get_token()), Stopped);
 }
 
 /// A triangle that faces the sensor, and a snapshot that sees it 20 mm too far away.

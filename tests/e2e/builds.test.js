@@ -65,7 +65,7 @@ async function buildAgain(scanner, {page, faults, made, rows}, screen) {
   const form = page.locator('#build-form');
   await form.getByLabel('Pose of the sensor').selectOption('auto');
   await form.getByLabel('Draft').check();
-  await form.getByLabel('Up, to').fill('60');
+  await form.locator('#build-clip').getByLabel('Up, to').fill('60');
   await picture(page, `build-again-${screen}`);
   assert.deepEqual(await complaints(page), []);
   assert.ok(await overflow(page) <= 0, 'the form is too wide');

@@ -125,6 +125,63 @@ TEST_F(SolidCommand, TellsOfTheMoveThatTheLastLookSawAndMakesTheSameModel) {
   EXPECT_TRUE(content_of(output_) == model);
 }
 
+TEST_F(SolidCommand, CutsErasesLaysScalesAndThinsAModel) {
+  write_ball_scan(scan_, 8);
+  // The lower half of the ball, hollowed by a small one, upside down at half its size.
+  const auto report = report_of({"--leaf-size-mm",
+                                 "2",
+                                 "--cut-mm",
+                                 "0",
+                                 "0",
+                                 "2",
+                                 "60",
+                                 "--cut-mm",
+                                 "0",
+                                 "0",
+                                 "-1",
+                                 "-20",
+                                 "--erase-mm",
+                                 "10",
+                                 "-5",
+                                 "60",
+                                 "20",
+                                 "--lay-mm",
+                                 "0",
+                                 "0",
+                                 "1",
+                                 "10",
+                                 "-5",
+                                 "60",
+                                 "--scale",
+                                 "0.5",
+                                 "--max-triangles",
+                                 "3000"});
+  EXPECT_EQ(open_edges(content_of(output_)), 0);
+  EXPECT_EQ(report["watertight"], true);
+  EXPECT_LE(report["triangles"].get<int>(), 3000);
+  EXPECT_FALSE(report.contains("quality"));
+  EXPECT_FALSE(report.contains("shell_thickness_mm"));
+  // A zone of a ball between planes 0 and 40 mm from its centre: pi h (R2 - h2 / 3).
+  const double zone = std::numbers::pi * 4 * (25 - 16.0 / 3);
+  const double hollow = 2.0 / 3 * std::numbers::pi * 8;
+  const double expected = (zone - hollow) / 8;  // cm3
+  EXPECT_NEAR(report["volume_cm3"].get<double>(), expected, expected * 0.04);
+  EXPECT_NEAR(report["size_mm"][2].get<double>(), 20, 0.05);
+  EXPECT_EQ(report["settings"]["cut_mm"],
+            nlohmann::json::parse("[[0.0, 0.0, 1.0, 60.0], [0.0, 0.0, -1.0, -20.0]]"));
+  EXPECT_EQ(report["settings"]["scale"], 0.5);
+}
+
+TEST_F(SolidCommand, RefusesEditsThatAreImpossible) {
+  write_ball_scan(scan_, 2);
+  expect_failure({"--cut-mm", "0", "0", "0", "5"}, 2, "cut_mm");
+  expect_failure({"--erase-mm", "0", "0", "0", "-5"}, 2, "erase_mm");
+  expect_failure({"--scale", "0"}, 2, "scale");
+  expect_failure({"--method", "intersection", "--cut-mm", "0", "0", "1", "5"}, 2,
+                 "--cut-mm: the method intersection has none");
+  expect_failure({"--leaf-size-mm", "4", "--cut-mm", "0", "0", "1", "-5"}, 1, "no surface");
+}
+
 TEST_F(SolidCommand, MakesOneClosedPartAndReportsIt) {
   write_ball_scan(scan_, 8);
   const auto report = report_of({"--leaf-size-mm", "2"});

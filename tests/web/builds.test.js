@@ -65,6 +65,8 @@ test('one model needs no list, and of several one is looked at', () => {
   assert.deepEqual(builds.rows.map(({name, isShown, isChosen, canRemove}) => [name, isShown, isChosen, canRemove]),
       [['As scanned', true, true, false], ['Build 1', false, false, true]]);
   assert.equal(builds.rows[1].about, '2 mm, solid · pose checked · 51 MB');
+  const cut = {...straight, settings: {...straight.settings, cut_mm: [[0, 0, 1, 40]]}};
+  assert.match(screenOf(withList([own, cut])).builds.rows[1].about, /edited/);
 });
 
 test('another model is shown with its own facts and verdict, and can be downloaded', () => {

@@ -13,7 +13,7 @@ import {json, sending, withoutAnswer} from './api.js';
  * @property {string} created
  * @property {number} snapshots_done
  * @property {number} snapshots_total
- * @property {Partial<Settings> & {leaf_size_mm: number, method: Settings['method'], calibrate: Settings['calibrate']}} settings
+ * @property {Partial<Settings> & import('../scan/edits.js').Edits & {leaf_size_mm: number, method: Settings['method'], calibrate: Settings['calibrate']}} settings
  * @property {{code: string, detail: string, hint: string} | null} error
  * @property {import('./api.js').ScanCalibration | null} calibration
  * @property {import('./api.js').Model | null} model

@@ -6,6 +6,7 @@ import {
 } from '../three.js';
 import {fitToCanvas, onClick} from '../base/canvas.js';
 import {clayMaterial, lampLight, platform, ringStep, roomLight} from './clay.js';
+import {erasedMark} from './erased_mark.js';
 import {lightOf} from './light.js';
 import {measureMark} from './measure_mark.js';
 import {smoothNormals} from './normals.js';
@@ -51,6 +52,8 @@ export class Viewer {
   #places = null;
   /** @type {any} */
   #measure = null;
+  /** @type {any} */
+  #erased = null;
   #isAimed = false;  // whether the user has moved the camera
   #isFrameDue = false;
   #drawnAt = 0;
@@ -162,6 +165,7 @@ export class Viewer {
     this.#shaded.value = 1;
     this.#places = null;
     this.#measure = null;
+    this.#erased = null;
     this.#painted.value = 0;
     this.turn(false);
   }
@@ -220,14 +224,36 @@ export class Viewer {
 
   /** Draws a line between two points, or a dot. @param {number[][]} points_mm  empty: removes it */
   showMeasure(points_mm) {
-    this.#measure?.traverse((/** @type {any} */ object) => {
+    this.#measure = this.#replaced(this.#measure, points_mm.length > 0 ? measureMark(points_mm) : null, this.#subject);
+  }
+
+  /** Marks balls that will be erased. @param {number[][]} balls_mm  centre and radius, in the model's own frame */
+  showErased(balls_mm) {
+    this.#erased = this.#replaced(this.#erased, balls_mm.length > 0 ? erasedMark(balls_mm) : null, this.#subject);
+    this.#erased?.applyMatrix4(this.#model.matrixWorld);
+  }
+
+  /** A mark in place of another. @param {any} before @param {any} mark @param {any} parent */
+  #replaced(before, mark, parent) {
+    before?.traverse((/** @type {any} */ object) => {
       object.geometry?.dispose();
       object.material?.dispose();
     });
-    this.#measure?.removeFromParent();
-    this.#measure = points_mm.length > 0 ? measureMark(points_mm) : null;
-    this.#measure && this.#subject.add(this.#measure);
+    before?.removeFromParent();
+    mark && parent.add(mark);
     this.#draw();
+    return mark;
+  }
+
+  /** The direction up in the frame of the model, and the height of its origin in its pose. */
+  pose() {
+    const up = new Vector3(0, 0, 1).applyQuaternion(this.#model.quaternion.clone().invert());
+    return {up: up.toArray(), height: this.#model.position.z};
+  }
+
+  /** A place in the frame of the model. @param {number[]} place_mm  in view */
+  inModel(place_mm) {
+    return this.#model.worldToLocal(new Vector3(...place_mm)).toArray();
   }
 
   /**

@@ -12,6 +12,10 @@ import {refusalText} from '../base/wording.js';
 /** Faults of a model that a solved pose may cure. */
 const faultsOfPose = new Set(['stops-disagree', 'floats', 'sunk']);
 
+/** Whether a model was cut, erased, laid or scaled. @param {import('./edits.js').Edits} edits */
+export const isEdited = ({cut_mm, erase_mm, lay_mm, scale}) =>
+  Boolean(cut_mm?.length || erase_mm?.length || lay_mm) || (scale ?? 1) !== 1;
+
 /** @param {Build} build */
 export const isGoing = ({state}) => state === 'waiting' || state === 'running';
 
@@ -109,12 +113,14 @@ const rowOf = ({build, model, settings, calibration, created, chosen, poses}, sh
   about: [
     text(`fact.${settings.method}`, {leaf: format.leaf(settings.leaf_size_mm)}),
     text(settings.calibrate === 'told' ? 'build.pose-stored' : calibration && !calibration.accepted ? 'build.pose-missing' : 'build.pose-checked'),
+    isEdited(settings) ? text('build.edited') : '',
     model ? format.bytes(model.bytes) : '',
   ].filter(Boolean).join(' · '),
   isShown: build === shown,
   isChosen: chosen,
   canRemove: !chosen && build !== 0 && !poses?.length,  // builds with further poses are deleted with the poses
   download: model?.url ?? '',
+  place: JSON.stringify([settings.lay_mm ?? null, settings.scale ?? 1]),
 });
 
 /**

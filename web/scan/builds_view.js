@@ -2,6 +2,8 @@
 
 import {element, list, part, setText, show} from '../base/dom.js';
 import {fetchFragment} from '../base/fragment.js';
+import {isEdited} from './builds.js';
+import {planesOf} from './edits.js';
 import {offerLeaves} from './leaf_choices.js';
 import {explain, gap, threshold} from './settings.js';
 import {text} from '../base/texts.js';
@@ -24,11 +26,15 @@ let isBegun = false;
 let last = null;
 let filledFor = '';  // the scan
 let filledWith = '';  // the settings in the form, of the model in view
-let isEdited = false;  // whether somebody has changed them since
+let isTouched = false;  // whether somebody has changed them since
+/** @type {import('./edits.js').Edits} of the model in view */
+let edits = {};
 
 const form = () => /** @type {HTMLFormElement} */ (element('build-form'));
 const clipFields = () => /** @type {HTMLInputElement[]} */ ([...form().querySelectorAll('[data-clip]')])
     .sort((a, b) => Number(a.dataset.clip) - Number(b.dataset.clip));
+const cropFields = () => /** @type {HTMLInputElement[]} */ ([...form().querySelectorAll('[data-crop]')])
+    .sort((a, b) => Number(a.dataset.crop) - Number(b.dataset.crop));
 const chosenMethod = () => part(element('build-methods'), 'input:checked').value;
 
 function explainFields() {
@@ -39,7 +45,9 @@ function explainFields() {
   for (const row of form().querySelectorAll('[data-of]')) {
     const isOf = /** @type {HTMLElement} */ (row).dataset.of === method;
     show(row, isOf);
-    part(row, 'input, select').disabled = !isOf;
+    for (const field of row.querySelectorAll('input, select')) {
+      /** @type {HTMLInputElement} */ (field).disabled = !isOf;
+    }
   }
   const fields = clipFields();
   for (let axis = 0; axis < 3; ++axis) {
@@ -48,8 +56,16 @@ function explainFields() {
   }
 }
 
-/** @param {Settings & {max_error_mm?: number, parts?: string, level?: number | null}} settings */
+/** @param {Settings & import('./edits.js').Edits & {max_error_mm?: number, parts?: string, level?: number | null}} settings */
 function fill(settings) {
+  edits = settings;
+  element('build-scale').value = settings.scale ?? 1;
+  element('build-triangles').value = settings.max_triangles ?? '';
+  show(element('build-edits'), isEdited({...settings, scale: 1}));
+  element('build-keep').checked = true;
+  for (const field of cropFields()) {
+    field.value = '';
+  }
   offerLeaves(element('build-leaves'), settings.leaf_size_mm);
   for (const radio of form().querySelectorAll('[name=method]')) {
     /** @type {HTMLInputElement} */ (radio).checked = /** @type {HTMLInputElement} */ (radio).value === settings.method;
@@ -68,7 +84,12 @@ function fill(settings) {
 /** The form's settings, without those that the method does not use. */
 function chosenSettings() {
   const method = chosenMethod();
+  const {cut_mm = [], erase_mm = [], lay_mm = null} = element('build-keep').checked ? edits : {};
+  const crop = planesOf(cropFields().map((field) => field.value === '' ? null : field.valueAsNumber));
   const own = method === 'solid' ? {
+    max_triangles: element('build-triangles').value === '' ? null : element('build-triangles').valueAsNumber,
+    cut_mm: [...cut_mm, ...crop],
+    erase_mm,
     max_error_mm: element('build-error').valueAsNumber,
     parts: element('build-parts').value,
   } : {
@@ -80,6 +101,8 @@ function chosenSettings() {
     leaf_size_mm: Number(part(element('build-leaves'), 'input:checked').value),
     calibrate: element('build-pose').value,
     clip_mm: clipFields().map((field) => field.valueAsNumber),
+    scale: element('build-scale').valueAsNumber,
+    lay_mm,
     ...own,
   };
 }
@@ -131,9 +154,9 @@ export function renderBuilds(builds) {
     element('build-again').open = false;
   }
   const settings = JSON.stringify(builds.settings);
-  if (filledFor !== builds.scan || filledWith !== settings && !isEdited) {
+  if (filledFor !== builds.scan || filledWith !== settings && !isTouched) {
     fill(builds.settings);
-    [filledFor, filledWith, isEdited] = [builds.scan, settings, false];
+    [filledFor, filledWith, isTouched] = [builds.scan, settings, false];
   }
   showRows(builds);
   showGoing(builds);
@@ -143,7 +166,7 @@ export function renderBuilds(builds) {
 /** @param {Actions} actions */
 function listen(actions) {
   form().addEventListener('input', () => {
-    isEdited = true;
+    isTouched = true;
     explainFields();
   });
   form().addEventListener('submit', (event) => {
@@ -157,7 +180,7 @@ function listen(actions) {
     const what = event.target.closest('[data-do]')?.dataset.do;
     const number = Number(event.target.closest('.build').dataset.key);
     if (what === 'show' || what === 'choose' || what === 'remove') {
-      isEdited = false;  // the form follows the model that this brings into view
+      isTouched = false;  // the form follows the model that this brings into view
       actions[what](number);
     }
   });

@@ -18,6 +18,7 @@ const barWidth = 10;
 
 let isHere = false;  // whether the fragment is loaded
 let current = '';  // the model in view
+let place = '';  // how the model in view was laid and scaled
 let other = '';  // name of the reference
 /** @type {Pick<Deviations, 'distances' | 'weights'> | null} of the model in view */
 let result = null;
@@ -114,7 +115,7 @@ async function compare() {
       mine.onmessage = ({data}) => done(data);
       mine.onerror = () => fail(new Error(text('compare.failed')));
     });
-    mine.postMessage({model, reference: wanted, isPlaced: !file}, [model.positions.buffer, wanted.positions.buffer]);
+    mine.postMessage({model, reference: wanted, isPlaced: !file && build.selectedOptions[0].dataset.place === place}, [model.positions.buffer, wanted.positions.buffer]);
     const found = await compared;
     if (worker === mine) {
       result = /** @type {any} */ (found);
@@ -157,12 +158,14 @@ export function showCompare() {
     forget();
     current = model?.url ?? '';
   }
+  place = builds?.rows.find(({isShown}) => isShown)?.place ?? '';
   const others = (builds?.rows ?? []).filter(({isShown}) => !isShown);
   show(element('compare-builds'), others.length > 0);
-  list(element('compare-build'), [{number: -1, name: text('compare.no-build'), download: ''}, ...others], ({number}) => String(number), 'compare-option',
-      (option, {name, download}) => {
-        setText(option, name);
-        option.value = download;
+  list(element('compare-build'), [{number: -1, name: text('compare.no-build'), download: '', place: ''}, ...others], ({number}) => String(number), 'compare-option',
+      (option, row) => {
+        setText(option, row.name);
+        option.value = row.download;
+        option.dataset.place = row.place;
       });
 }
 

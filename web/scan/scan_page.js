@@ -4,6 +4,7 @@ import {prepareBuilds, renderBuilds} from './builds_view.js';
 import {start} from '../api/api.js';
 import {element, setVerbatim, show} from '../base/dom.js';
 import {prepareCompare, showCompare} from './compare.js';
+import {makeModel} from './make_model.js';
 import {build, buildActions, poseActions} from './model_actions.js';
 import {nextScan} from './next.js';
 import {prepareNotes, showNotes} from './notes.js';
@@ -14,6 +15,7 @@ import {prepareSend} from './send.js';
 import {prepareShare} from './share.js';
 import {scanOf, withStarted} from '../state.js';
 import {showScanPage} from '../view.js';
+import {offerMaker} from './view_tools.js';
 
 /** @typedef {ReturnType<typeof screenOf>} Screen */
 
@@ -60,6 +62,7 @@ export function prepare() {
     prepareSend();
     prepareShare();
     prepareCompare();
+    offerMaker(makeModel);
     showScanPage(render);
   }
   prepareBuilds(buildActions);

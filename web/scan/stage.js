@@ -62,7 +62,7 @@ function put(mesh, isFirst, isCoarse = false) {
   show(element('filled'), mesh.filled !== null);
   viewer?.show(mesh, {isFirst, isGrowing: Boolean(due?.growing), isCoarse});
   standUp();
-  offerPaints(due?.model?.url ?? null, due?.paint ?? null);
+  offerPaints(due?.model?.url ?? null, due?.paint ?? null, due?.isSolid);
   if (isFirst) {
     viewer?.turn(!isStill);
   }

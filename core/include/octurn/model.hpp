@@ -77,7 +77,8 @@ struct BuiltModel {
   Scan scan = {};                                     ///< with the pose that it was made with
   std::optional<CalibrationReport> calibration = {};  ///< if the pose was solved for it
   std::optional<ModelReport> report = {};             ///< if it was measured
-  std::optional<Quality> quality = {};  ///< if it was measured, and the scan is on a platform
+  /// If it was measured, the scan is on a platform, and the model is not edited.
+  std::optional<Quality> quality = {};
 };
 
 /// Builds the model of a stored scan: solves the sensor's pose, reconstructs the surface by the

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -53,7 +54,53 @@ struct SolidOptions {
 
   /// With several poses `main` is always used: the object that was turned over is one.
   Parts parts = Parts::main;
+
+  /// Edges are collapsed beyond `target_error` until at most this many triangles are left, if
+  /// collapsing them can do that.
+  std::optional<std::uint64_t> max_triangles = {};
 };
+
+/// A plane: points p with normal.p = distance.
+struct CutPlane {
+  Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();  ///< of length one, towards what is cut off
+  double distance = 0;                                ///< metres
+
+  bool operator==(const CutPlane&) const = default;
+};
+
+/// A ball whose inside is removed.
+struct ErasedBall {
+  Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< metres
+  double radius = 0;                                 ///< metres
+
+  bool operator==(const ErasedBall&) const = default;
+};
+
+/// How a model is laid on another side.
+struct LaidSide {
+  Eigen::Vector3d down = -Eigen::Vector3d::UnitZ();  ///< of length one; becomes -Z
+  Eigen::Vector3d point = Eigen::Vector3d::Zero();   ///< metres; becomes the origin
+
+  bool operator==(const LaidSide&) const = default;
+};
+
+/// How a person changed a model. Cuts and balls are in the object's frame. The model is then laid,
+/// and scaled about the origin.
+struct ModelEdits {
+  std::vector<CutPlane> cuts = {};      ///< `solid` only
+  std::vector<ErasedBall> erased = {};  ///< `solid` only
+  std::optional<LaidSide> lay = {};
+  double scale = 1;
+
+  bool operator==(const ModelEdits&) const = default;
+  bool change_shape() const { return !cuts.empty() || !erased.empty(); }
+  bool move() const { return lay.has_value() || scale != 1; }
+};
+
+/// The pose and scale of an edited model.
+///
+/// The rotation that lays a model is the smallest one; a model is turned over about X.
+Eigen::Affine3d model_from_object(const ModelEdits& edits);
 
 /// Options of both methods, except where one is named.
 struct ReconstructOptions {
@@ -89,6 +136,9 @@ struct ReconstructOptions {
   double target_error = SensorTraits{}.target_error;
 
   SolidOptions solid = {};
+
+  /// `make_reconstructor` applies those that change the shape, and `build_model` all of them.
+  ModelEdits edits = {};
 
   /// At least 1. The model's bytes do not depend on it.
   int threads = 1;

@@ -20,6 +20,10 @@ const ReconstructOptions& checked(const ReconstructOptions& options) {
       !(options.target_error >= 0 && options.target_error < options.root_size)) {
     throw Error(ErrorCode::bad_settings, "max error: must be 0 or above");
   }
+  if (options.edits.change_shape() || options.solid.max_triangles) {
+    throw Error(ErrorCode::bad_settings, "the model of a space is not cut and has no set size",
+                "Choose a smaller clip box, or a larger max error.");
+  }
   if (options.method == Method::solid && options.level) {
     throw Error(ErrorCode::bad_settings, "level: the method solid has none");
   }

@@ -8,6 +8,8 @@
 #include <limits>
 #include <numbers>
 #include <span>
+#include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "octurn/snapshot.hpp"
@@ -141,7 +143,7 @@ constexpr CubeRange all_cubes{
     .end = {std::numeric_limits<int>::max(), std::numeric_limits<int>::max(),
             std::numeric_limits<int>::max()}};
 
-/// @tparam Field  `HoleFilledSdf` or `ShellField`
+/// @tparam Field  `HoleFilledSdf`, `EditedSdf` or `ShellField`
 template <typename Field>
 class MarchingCubes {
  public:
@@ -277,8 +279,7 @@ class MarchingCubes {
     Index3 second = first;
     (axis == 0 ? second.x : axis == 1 ? second.y : second.z) += 1;
     const bool first_inside = inside_.contains(voxel.x, voxel.y, voxel.z);
-    const auto a = field_.at(first);
-    const auto b = field_.at(second);
+    const auto [a, b] = values(first, second, first_inside);
     const float from_first = magnitude(a.distance, first_inside);
     const float from_second = magnitude(b.distance, !first_inside);
     float fraction = from_first / (from_first + from_second);
@@ -297,6 +298,21 @@ class MarchingCubes {
           mm_from_metres(field_.centre(position[i], i) + step * field_.voxel_side()));
     }
     return vertex;
+  }
+
+  /// The values at both ends of an edge.
+  std::pair<HoleFilledSdf::Value, HoleFilledSdf::Value> values(const Index3& first,
+                                                               const Index3& second,
+                                                               bool first_inside) const {
+    if constexpr (std::is_same_v<Field, EditedSdf>) {
+      if (first_inside) {
+        return field_.edge(first, second);
+      }
+      const auto [inside, outside] = field_.edge(second, first);
+      return {outside, inside};
+    } else {
+      return {field_.at(first), field_.at(second)};
+    }
   }
 
   /// A voxel's distance to the surface, ticks; half a voxel where the field's sign contradicts the
@@ -332,28 +348,28 @@ class MarchingCubes {
 };
 
 /// The piece that one thread draws.
+template <typename Field>
 struct Part {
-  MarchingCubes<HoleFilledSdf> cubes;
+  MarchingCubes<Field> cubes;
   MeshPieces pieces = {};
   std::uint32_t before = 0;  // vertices of the layer below
 };
 
-}  // namespace
-
-void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
+template <typename Field>
+void draw_all_cubes(const VoxelMask& inside, const Field& field, const MeshSink& sink,
                     const std::stop_token& stop, ThreadTeam& team) {
   const int layers = inside.size().z;
   if (team.size() == 1) {
-    MarchingCubes(inside, sdf).run(-1, layers, sink, stop);
+    MarchingCubes(inside, field).run(-1, layers, sink, stop);
     return;
   }
   // Each thread draws some layers at a time, from below; the pieces are handed on in their order.
-  std::vector<Part> parts(static_cast<std::size_t>(team.size()),
-                          {.cubes = MarchingCubes(inside, sdf)});
+  std::vector<Part<Field>> parts(static_cast<std::size_t>(team.size()),
+                                 {.cubes = MarchingCubes(inside, field)});
   std::uint32_t vertices = 0;
   for (int low = -1; low < layers; low += team.size() * layers_at_once) {
     team.run([&](int thread) {
-      Part& part = parts[static_cast<std::size_t>(thread)];
+      Part<Field>& part = parts[static_cast<std::size_t>(thread)];
       part.pieces.clear();
       const int first = low + thread * layers_at_once;
       if (first < layers) {
@@ -362,11 +378,23 @@ void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const Mes
             [&](const MeshPiece& piece) { part.pieces.add(piece); }, stop);
       }
     });
-    for (Part& part : parts) {
+    for (Part<Field>& part : parts) {
       part.pieces.stream(vertices - part.before, sink);
       vertices += static_cast<std::uint32_t>(part.pieces.vertex_count());
     }
   }
+}
+
+}  // namespace
+
+void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
+                    const std::stop_token& stop, ThreadTeam& team) {
+  draw_all_cubes(inside, sdf, sink, stop, team);
+}
+
+void marching_cubes(const VoxelMask& inside, const EditedSdf& sdf, const MeshSink& sink,
+                    const std::stop_token& stop, ThreadTeam& team) {
+  draw_all_cubes(inside, sdf, sink, stop, team);
 }
 
 void marching_cubes(const VoxelMask& inside, const ShellField& shell, const CubeRange& range,

@@ -4,6 +4,7 @@
 
 #include "mesh/mesh.hpp"
 #include "parallel/thread_team.hpp"
+#include "tsdf/edited_sdf.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/shell.hpp"
 #include "voxel/voxel_mask.hpp"
@@ -19,6 +20,9 @@ namespace octurn {
 /// @param inside  the outermost voxels of its box are outside, except in its lowest layer
 /// @throws Stopped  between two layers
 void marching_cubes(const VoxelMask& inside, const HoleFilledSdf& sdf, const MeshSink& sink,
+                    const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone());
+/// @param inside  without the voxels that edits removed
+void marching_cubes(const VoxelMask& inside, const EditedSdf& sdf, const MeshSink& sink,
                     const std::stop_token& stop = {}, ThreadTeam& team = ThreadTeam::alone());
 
 /// A half-open range of cubes, each between eight voxels, by their lowest corners in a mask.

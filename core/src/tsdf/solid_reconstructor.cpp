@@ -13,6 +13,7 @@
 #include "octurn/error.hpp"
 #include "octurn/units.hpp"
 #include "parallel/thread_team.hpp"
+#include "tsdf/edited_sdf.hpp"
 #include "tsdf/facet_stream.hpp"
 #include "tsdf/hole_filled_sdf.hpp"
 #include "tsdf/integrate.hpp"
@@ -21,6 +22,7 @@
 #include "tsdf/memory_plan.hpp"
 #include "tsdf/observed_surface.hpp"
 #include "tsdf/voxel_grid.hpp"
+#include "voxel/connected_components.hpp"
 #include "voxel/memory_limit.hpp"
 
 namespace octurn {
@@ -44,6 +46,11 @@ constexpr double max_bulge_of_lines = 0.005;  // metres
 /// The simplifier's margin below the upper end of its window.
 constexpr double margin_voxels = 8;
 
+// The search for a number of triangles: draws after the first that has few enough, and the largest
+// error, in voxels.
+constexpr int refining_draws = 4;
+constexpr double max_error_voxels = 2;
+
 /// How often voxels can be merged, eight to one, before their side exceeds `leaf_size`.
 int halvings_to(double leaf_size, const VoxelGrid& grid) {
   int halvings = 0;
@@ -51,6 +58,45 @@ int halvings_to(double leaf_size, const VoxelGrid& grid) {
     ++halvings;
   }
   return halvings;
+}
+
+/// The smallest error that leaves few enough triangles, found by doubling and bisection; `max` if
+/// none does.
+template <typename IsTooMany>
+double min_error(double first, double max, const IsTooMany& is_too_many) {
+  if (!is_too_many(first)) {
+    return first;
+  }
+  constexpr double least = 1e-5;  // metres
+  double low = std::max(first, least);
+  double high = std::min(2 * low, max);
+  while (high < max && is_too_many(high)) {
+    low = high;
+    high = std::min(2 * high, max);
+  }
+  for (int i = 0; i < refining_draws && low < high; ++i) {
+    const double middle = std::sqrt(low * high);
+    (is_too_many(middle) ? low : high) = middle;
+  }
+  return high;
+}
+
+/// Removes the voxels that are cut off or erased, and then crumbs and spurs.
+void remove_edited(VoxelMask& mask, const EditedSdf& sdf, std::uint64_t min_part,
+                   const std::stop_token& stop, ThreadTeam& team) {
+  const Index3 low = mask.low();
+  team.for_each(mask.size().z, [&](int z) {
+    throw_if_stopped(stop);
+    for (int y = 0; y < mask.size().y; ++y) {
+      for (int x = 0; x < mask.size().x; ++x) {
+        if (mask.contains(x, y, z) && sdf.is_removed({low.x + x, low.y + y, low.z + z})) {
+          assign(mask.row(y, z), x, x + 1, false);
+        }
+      }
+    }
+  });
+  keep_standing_components(mask, mask.size().z, min_part, stop);
+  mask.remove_spurs(stop);
 }
 
 }  // namespace
@@ -144,20 +190,46 @@ SurfaceCount SolidReconstructor::make_surface(const CompactTsdf& known, const Ho
   solid = solid.cropped();  // a mask of the whole box is as large as all that was seen
   solid.remove_spurs(stop);
   solid.fill_cavities(stop);
+  const EditedSdf edited(sdf, options_.edits);
+  const bool is_edited = options_.edits.change_shape();
+  if (is_edited) {
+    remove_edited(solid, edited, min_part_voxels(sdf), stop, team);
+  }
   SurfaceCount count{.leaves = solid.count(),
                      .facets = 0,
                      .parts = solid.component_count(stop),
                      .dropped_parts = dropped.count,
                      .dropped_leaves = dropped.voxels};
-  draw(
-      solid, sdf,
-      [&](std::span<const Facet> facets) {
-        throw_if_stopped(stop);
-        count.facets += facets.size();
-        sink(facets);
-      },
-      stop, team);
+  count.facets = is_edited ? draw_limited(solid, edited, sink, stop, team)
+                           : draw_limited(solid, sdf, sink, stop, team);
   return count;
+}
+
+/// Draws a mask with as few triangles as the options say. @return their number
+template <typename Field>
+std::uint64_t SolidReconstructor::draw_limited(const VoxelMask& solid, const Field& field,
+                                               const FacetSink& sink, const std::stop_token& stop,
+                                               ThreadTeam& team) const {
+  const auto draw_with = [&](double target_error, const FacetSink& take) {
+    std::uint64_t facets = 0;
+    draw(
+        solid, field, target_error,
+        [&](std::span<const Facet> some) {
+          throw_if_stopped(stop);
+          facets += some.size();
+          take(some);
+        },
+        stop, team);
+    return facets;
+  };
+  double target_error = options_.target_error;
+  if (const auto max = options_.solid.max_triangles) {
+    const auto is_too_many = [&](double error) {
+      return draw_with(error, [](std::span<const Facet>) {}) > *max;
+    };
+    target_error = min_error(target_error, max_error_voxels * field.voxel_side(), is_too_many);
+  }
+  return draw_with(target_error, sink);
 }
 
 /// Minimum votes for free space.
@@ -248,19 +320,21 @@ StandingParts SolidReconstructor::keep_parts(const HoleFilledSdf& sdf, const std
 }
 
 /// Draws a mask by marching cubes, and simplifies the mesh on its way to the sink.
-void SolidReconstructor::draw(const VoxelMask& solid, const HoleFilledSdf& sdf,
+template <typename Field>
+void SolidReconstructor::draw(const VoxelMask& solid, const Field& field, double target_error,
                               const FacetSink& sink, const std::stop_token& stop,
                               ThreadTeam& team) const {
-  if (options_.target_error > 0) {
-    StreamSimplifier simplifier(mm_from_metres(options_.target_error),
-                                mm_from_metres(margin_voxels * sdf.voxel_side()), sink, stop, team);
+  if (target_error > 0) {
+    StreamSimplifier simplifier(mm_from_metres(target_error),
+                                mm_from_metres(margin_voxels * field.voxel_side()), sink, stop,
+                                team);
     marching_cubes(
-        solid, sdf, [&](const MeshPiece& piece) { simplifier.add(piece); }, stop, team);
+        solid, field, [&](const MeshPiece& piece) { simplifier.add(piece); }, stop, team);
     simplifier.finish();
   } else {
     FacetStream facets(sink);
     marching_cubes(
-        solid, sdf, [&](const MeshPiece& piece) { facets.add(piece); }, stop, team);
+        solid, field, [&](const MeshPiece& piece) { facets.add(piece); }, stop, team);
   }
 }
 

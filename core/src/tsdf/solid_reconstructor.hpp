@@ -61,8 +61,12 @@ class SolidReconstructor final : public Reconstructor {
   SurfaceCount make_surface(const CompactTsdf& known, const HoleFilledSdf& sdf,
                             const FacetSink& sink, const std::stop_token& stop,
                             ThreadTeam& team) const;
-  void draw(const VoxelMask& solid, const HoleFilledSdf& sdf, const FacetSink& sink,
+  template <typename Field>
+  void draw(const VoxelMask& solid, const Field& field, double target_error, const FacetSink& sink,
             const std::stop_token& stop, ThreadTeam& team) const;
+  template <typename Field>
+  std::uint64_t draw_limited(const VoxelMask& solid, const Field& field, const FacetSink& sink,
+                             const std::stop_token& stop, ThreadTeam& team) const;
 
   ReconstructOptions options_;
   TsdfVolume volume_;

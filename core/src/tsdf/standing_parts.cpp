@@ -21,15 +21,19 @@ constexpr double min_foot = 0.004;  // metres
 // The platform's noise makes crumbs of up to 30 mm3.
 constexpr double min_part_volume = 1e-7;  // cubic metres
 
+}  // namespace
+
+std::uint64_t min_part_voxels(const HoleFilledSdf& sdf) {
+  return static_cast<std::uint64_t>(std::ceil(min_part_volume / std::pow(sdf.voxel_side(), 3)));
+}
+
+namespace {
+
 /// The lowest voxel of a column that has none.
 constexpr int no_foot = -1;
 
 int layers_in(double height, const HoleFilledSdf& sdf) {
   return static_cast<int>(std::floor(height / sdf.voxel_side())) + 1;
-}
-
-std::uint64_t min_part_voxels(const HoleFilledSdf& sdf) {
-  return static_cast<std::uint64_t>(std::ceil(min_part_volume / std::pow(sdf.voxel_side(), 3)));
 }
 
 bool is_empty(std::span<const std::uint64_t> row) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <stop_token>
 
 #include "octurn/reconstruct.hpp"
@@ -15,6 +16,9 @@ struct StandingParts {
   VoxelMask mask;
   DroppedComponents dropped = {};
 };
+
+/// The number of voxels of the smallest component that is a part and no crumb.
+std::uint64_t min_part_voxels(const HoleFilledSdf& sdf);
 
 /// The connected components of the inside that the model keeps.
 ///

@@ -68,6 +68,7 @@ std::optional<Build> build_model(const BuildInput& input, const Limits& limits,
   Scan scan = scan_to_build(input.folder, settings);
   ReconstructOptions options = checked_options(settings.scan, limits, scan.shots.size());
   options.level = settings.level;
+  add_edits(options, settings.edits);
   options.clip = choose_clip(scan, input);
   const auto& calibration = input.job.calibration;
   ModelInput model{

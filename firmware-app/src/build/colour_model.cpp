@@ -66,8 +66,8 @@ void colour_model(const std::filesystem::path& model, const ModelScan& of, Colou
   const FacetFile facets(model);
   expect_memory(facets, of.scan.intrinsics, memory_limit);
   const std::vector<Rgb> colours =
-      are_views ? view_colours(facets, readable_snapshots(of.folder, of.scan, stop), stop)
-                : model_colours(facets, of.folder, of.scan, stop);
+      are_views ? view_colours(facets, readable_snapshots(of.folder, of.scan, stop), of.edits, stop)
+                : model_colours(facets, of.folder, of.scan, of.edits, stop);
   const auto bytes = std::as_bytes(std::span(colours));
   write_file(colours_file(model, shown),
              {reinterpret_cast<const char*>(bytes.data()), bytes.size()});

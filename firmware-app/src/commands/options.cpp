@@ -13,9 +13,18 @@ namespace {
 
 using nlohmann::json;
 
+/// Whether a setting is a list of rows of numbers.
+bool holds_rows(const json& schema) {
+  return schema["type"] == "array" && schema["items"]["type"] == "array";
+}
+
 /// The value's placeholder in the help.
 std::string placeholder(const Field& field) {
   const json& schema = field.access.schema;
+  const json& row = holds_rows(schema) ? schema["items"] : schema;
+  if (row.contains("title")) {
+    return row["title"];
+  }
   if (schema["type"] == "array") {
     return "X0 Y0 Z0 X1 Y1 Z1";
   }
@@ -46,6 +55,25 @@ CLI::Option* add_option(CLI::App& command, const Field& field, json& given) {
       help_text(field));
 }
 
+/// An option that may be given several times, each time with the numbers of one row.
+CLI::Option* add_rows_option(CLI::App& command, const Field& field, json& given) {
+  const auto numbers = field.access.schema["items"]["minItems"].get<std::size_t>();
+  CLI::Option* const option = command.add_option_function<std::vector<double>>(
+      option_name(field.key),
+      [&given, numbers, key = std::string(field.key)](const std::vector<double>& values) {
+        json rows = json::array();
+        for (std::size_t i = 0; i < values.size(); ++i) {
+          if (i % numbers == 0) {
+            rows.push_back(json::array());
+          }
+          rows.back().push_back(values[i]);
+        }
+        given[key] = rows;
+      },
+      help_text(field));
+  return option->type_size(static_cast<int>(numbers))->expected(1, -1)->allow_extra_args(false);
+}
+
 CLI::Option* add_option_of_type(CLI::App& command, const Field& field, json& given) {
   const json& schema = field.access.schema;
   if (schema["type"] == "integer") {
@@ -53,6 +81,9 @@ CLI::Option* add_option_of_type(CLI::App& command, const Field& field, json& giv
   }
   if (schema["type"] == "number") {
     return add_option<double>(command, field, given);
+  }
+  if (holds_rows(schema)) {
+    return add_rows_option(command, field, given);
   }
   if (schema["type"] == "array") {
     return add_option<std::vector<double>>(command, field, given)

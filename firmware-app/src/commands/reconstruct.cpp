@@ -51,7 +51,7 @@ class ColouredModel {
   /// Colours the finished STL and writes the file, which appears whole or not at all.
   /// @param folder  of the scan
   /// @throws Error "disk-full", "write-failed", "memory-limit"; Stopped
-  void write(const std::filesystem::path& folder, const Scan& scan,
+  void write(const std::filesystem::path& folder, const Scan& scan, const ModelEdits& edits,
              const std::stop_token& stop) const;
 
  private:
@@ -87,9 +87,9 @@ ColouredModel::~ColouredModel() {
 }
 
 void ColouredModel::write(const std::filesystem::path& folder, const Scan& scan,
-                          const std::stop_token& stop) const {
+                          const ModelEdits& edits, const std::stop_token& stop) const {
   const FacetFile facets(stl_);
-  const std::vector<Rgb> colours = model_colours(facets, folder, scan, stop);
+  const std::vector<Rgb> colours = model_colours(facets, folder, scan, edits, stop);
   format_.write({.facets = facets, .name = file_.stem().string(), .colours = colours}, file_);
 }
 
@@ -134,7 +134,7 @@ Json to_json(ModelSettings settings) {
   return object;
 }
 
-/// @param quality    nothing for a scan with free poses, which is not judged
+/// @param quality    nothing for a model that is not judged
 /// @param agreement  of a scan with free poses
 Json to_json(const ModelReport& report, const std::optional<Quality>& quality,
              const std::optional<ViewAgreement>& agreement, const ModelSettings& settings,
@@ -149,7 +149,7 @@ Json to_json(const ModelReport& report, const std::optional<Quality>& quality,
               {"watertight", report.watertight},
               {"volume_cm3", cm3_from_m3(report.volume)},
               {"size_mm", mm(report.size)}};
-  if (settings.scan.method == Method::solid && !quality) {
+  if (settings.scan.method == Method::solid && agreement) {
     object["shell_thickness_mm"] =
         mm_from_metres(shell_thickness(reconstruct_options(settings.scan, settings.limits)));
   } else if (settings.scan.method == Method::solid) {
@@ -267,7 +267,7 @@ void reconstruct(const ReconstructArguments& arguments) try {
     };
     built = build_model(std::move(input), stop);
     if (coloured) {
-      coloured->write(arguments.folder, built.scan, stop);
+      coloured->write(arguments.folder, built.scan, settings.edits.edits, stop);
     }
     times = {.snapshots = begun[2] - begun[1], .surface = Clock::now() - begun[2]};
   }

@@ -30,6 +30,7 @@ ModelSettings settings_from(const nlohmann::json& given, const Scan& scan) {
 ReconstructOptions options_from(const ModelSettings& settings) {
   ReconstructOptions options = reconstruct_options(settings.scan, settings.limits);
   options.level = settings.level;
+  add_edits(options, settings.edits);
   return options;
 }
 

@@ -26,6 +26,10 @@ ModelInput read_tiled_input(const ReconstructArguments& arguments) {
                 arguments.folder.string() + ": has no tiles: it is a scan on the turntable",
                 "Make its model whole, by octurn reconstruct -o.");
   }
+  if (input.options.edits != ModelEdits{} || input.options.solid.max_triangles) {
+    throw Error(ErrorCode::bad_settings, "tiles are not cut, erased, laid, scaled or limited",
+                "Make the model whole, by octurn reconstruct -o, to lay or scale it.");
+  }
   fit_to_scan(input.options, input.scan);
   return input;
 }

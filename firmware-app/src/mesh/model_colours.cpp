@@ -10,8 +10,32 @@
 
 namespace octurn {
 
+namespace {
+
+using Eigen::Vector3d;
+using Eigen::Vector3f;
+
+Vector3d metres_of(const Vertex& vertex) {
+  return Eigen::Map<const Vector3f>(vertex.data()).cast<double>() * metres_from_mm(1);
+}
+
+/// Vertices of an edited model, millimetres in the object's frame.
+std::vector<Vertex> placed_back(std::span<const Vertex> vertices, const ModelEdits& edits) {
+  const Eigen::Affine3d object_from_model = model_from_object(edits).inverse();
+  std::vector<Vertex> placed(vertices.size());
+  std::ranges::transform(vertices, placed.begin(), [&](const Vertex& vertex) {
+    const Vector3d mm = object_from_model * metres_of(vertex) * mm_from_metres(1);
+    return Vertex{static_cast<float>(mm.x()), static_cast<float>(mm.y()),
+                  static_cast<float>(mm.z())};
+  });
+  return placed;
+}
+
+}  // namespace
+
 std::vector<Rgb> model_colours(const FacetFile& facets, const std::filesystem::path& folder,
-                               const Scan& scan, const std::stop_token& stop) {
+                               const Scan& scan, const ModelEdits& edits,
+                               const std::stop_token& stop) {
   const VertexTable table(facets);
   std::vector<std::array<std::uint32_t, 3>> triangles;
   triangles.reserve(facets.count());
@@ -22,7 +46,15 @@ std::vector<Rgb> model_colours(const FacetFile& facets, const std::filesystem::p
           {table.index(corners[0]), table.index(corners[1]), table.index(corners[2])});
     }
   });
-  return vertex_colours(folder, scan, {.vertices = table.vertices(), .triangles = triangles}, stop);
+  std::vector<Vertex> placed;
+  if (edits.move()) {
+    placed = placed_back(table.vertices(), edits);
+  }
+  return vertex_colours(
+      folder, scan,
+      {.vertices = edits.move() ? std::span<const Vertex>(placed) : table.vertices(),
+       .triangles = triangles},
+      stop);
 }
 
 void expect_colours_of(const VertexTable& table, std::span<const Rgb> colours) {
@@ -34,9 +66,6 @@ void expect_colours_of(const VertexTable& table, std::span<const Rgb> colours) {
 
 namespace {
 
-using Eigen::Vector3d;
-using Eigen::Vector3f;
-
 constexpr double min_view_cosine = 0.25;  // of incidence, 75 degrees
 // Metres: three sigma of a Kinect v1's noise at 0.75 m, and half a pixel on a surface that steep.
 // Noise and steps of depth grow with the square of the distance.
@@ -46,10 +75,6 @@ constexpr double near_distance = 0.75;
 double max_off(double distance) {
   const double ratio = std::max(1.0, distance / near_distance);
   return near_off * ratio * ratio;
-}
-
-Vector3d metres_of(const Vertex& vertex) {
-  return Eigen::Map<const Vector3f>(vertex.data()).cast<double>() * metres_from_mm(1);
 }
 
 /// The vertices' normals, weighted by the areas of their triangles.
@@ -93,19 +118,21 @@ bool sees(const Snapshot& snapshot, const Vector3d& point, const Vector3d& norma
 }  // namespace
 
 std::vector<Rgb> view_colours(const FacetFile& facets, const SnapshotSource& snapshots,
-                              const std::stop_token& stop) {
+                              const ModelEdits& edits, const std::stop_token& stop) {
   const VertexTable table(facets);
   const std::span<const Vertex> vertices = table.vertices();
   const std::vector<Vector3f> normals = normals_of(facets, table, stop);
+  const Eigen::Affine3d object_from_model = model_from_object(edits).inverse();
   std::vector<std::uint8_t> views(vertices.size());
   for (std::size_t shot = 0; shot < snapshots.count; ++shot) {
     throw_if_stopped(stop);
     const Snapshot snapshot = snapshots.read(shot);
-    const Eigen::Isometry3d sensor_from_object = snapshot.object_from_sensor.inverse();
+    const Eigen::Affine3d sensor_from_model =
+        snapshot.object_from_sensor.inverse() * object_from_model;
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       if (views[i] + 1U < colours_of_views.size() &&
-          sees(snapshot, sensor_from_object * metres_of(vertices[i]),
-               sensor_from_object.linear() * normals[i].cast<double>())) {
+          sees(snapshot, sensor_from_model * metres_of(vertices[i]),
+               sensor_from_model.linear() * normals[i].cast<double>())) {
         ++views[i];
       }
     }

@@ -16,9 +16,11 @@ namespace octurn {
 /// Computes the colours of the vertices of a model's VertexTable by `vertex_colours`. Memory is
 /// that of the table, and about 60 bytes a vertex.
 /// @param folder  of the scan that the model was made of
+/// @param edits   of the model: a laid or scaled one is seen where the object stood
 /// @throws Error  as `vertex_colours`; "memory-limit"
 std::vector<Rgb> model_colours(const FacetFile& facets, const std::filesystem::path& folder,
-                               const Scan& scan, const std::stop_token& stop = {});
+                               const Scan& scan, const ModelEdits& edits = {},
+                               const std::stop_token& stop = {});
 
 /// Checks that a model has as many colours as vertices, which fails if it was rebuilt meanwhile.
 /// @param colours  may be empty
@@ -41,8 +43,9 @@ inline constexpr std::array<Rgb, 6> colours_of_views{{
 /// the surface faces the sensor at less than 75 degrees. Memory is that of the table, 16 bytes a
 /// vertex more, and one snapshot.
 /// @param snapshots  of the model, by a depth sensor
+/// @param edits      as above
 /// @throws Error "memory-limit", "read-failed"; as the source; Stopped
 std::vector<Rgb> view_colours(const FacetFile& facets, const SnapshotSource& snapshots,
-                              const std::stop_token& stop = {});
+                              const ModelEdits& edits = {}, const std::stop_token& stop = {});
 
 }  // namespace octurn

@@ -200,7 +200,11 @@ std::string allowed_text(const json& schema) {
     return plain_text(schema["minimum"]) + " to " + plain_text(schema["maximum"]);
   }
   if (schema.contains("minItems")) {
-    return plain_text(schema["minItems"]) + " numbers, " + allowed_text(schema["items"]);
+    const std::string of_each = allowed_text(schema["items"]);
+    return plain_text(schema["minItems"]) + " numbers" + (of_each.empty() ? "" : ", ") + of_each;
+  }
+  if (schema.contains("items") && schema["items"].contains("minItems")) {
+    return "lists of " + allowed_text(schema["items"]);
   }
   return schema.value("type", "") == "boolean" ? "true or false" : "";
 }

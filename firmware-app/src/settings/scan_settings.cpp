@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <thread>
 #include <utility>
@@ -21,7 +22,11 @@ using nlohmann::json;
 constexpr int max_frames = 100;  // 3 s at 30 frames a second: more does not lower the noise
 constexpr int max_threads = 256;
 constexpr double max_root_mm = 10000;
-constexpr double min_leaf_mm = 0.1;   // larger roots need more: see `check_leaf`
+constexpr double min_leaf_mm = 0.1;  // larger roots need more: see `check_leaf`
+constexpr double min_scale = 0.01;
+constexpr double max_scale = 100;
+constexpr int min_triangles = 100;
+constexpr int max_triangles = 100'000'000;
 constexpr double min_memory_mb = 17;  // of the intersection method with one thread
 
 // Memory of program and libraries without a reconstruction, measured on x86-64.
@@ -68,6 +73,107 @@ Access box(Box& value, double max_coordinate_mm) {
               },
           .write = [&value] { return to_mm(value); },
           .schema = {{"type", "array"}, {"items", side}, {"minItems", 6}, {"maxItems", 6}}};
+}
+
+constexpr double max_edit_mm = 1e6;
+constexpr std::size_t max_edits = 200;
+
+json row_schema(std::size_t numbers, const char* title) {
+  return {{"type", "array"},
+          {"items", {{"type", "number"}}},
+          {"minItems", numbers},
+          {"maxItems", numbers},
+          {"title", title}};
+}
+
+std::vector<double> row_from(const JsonValue& given, std::size_t numbers) {
+  std::vector<double> row;
+  for (const JsonValue& number : given.elements(numbers)) {
+    row.push_back(number.number(-max_edit_mm, max_edit_mm));
+  }
+  return row;
+}
+
+Eigen::Vector3d point_from(const std::vector<double>& row, std::size_t first) {
+  return metres_from_mm(1) * Eigen::Vector3d(row[first], row[first + 1], row[first + 2]);
+}
+
+Eigen::Vector3d direction_from(const JsonValue& given, const std::vector<double>& row) {
+  const Eigen::Vector3d direction(row[0], row[1], row[2]);
+  if (direction.norm() < 1e-6) {
+    given.refuse("a direction and a length, and the direction not 0 0 0");
+  }
+  return direction.normalized();
+}
+
+/// A list of rows of four numbers.
+template <typename Edit>
+Access rows_of_four(std::vector<Edit>& value, const char* title,
+                    Edit (*from)(const JsonValue& given, const std::vector<double>& row),
+                    json (*to_row)(const Edit& edit)) {
+  return {.read =
+              [&value, from](const JsonValue& given) {
+                std::vector<Edit> edits;
+                for (const JsonValue& row : given.elements()) {
+                  edits.push_back(from(row, row_from(row, 4)));
+                }
+                if (edits.size() > max_edits) {
+                  given.refuse("at most " + std::to_string(max_edits) + " rows");
+                }
+                value = std::move(edits);
+              },
+          .write =
+              [&value, to_row] {
+                json rows = json::array();
+                std::ranges::transform(value, std::back_inserter(rows), to_row);
+                return rows;
+              },
+          .schema = {{"type", "array"}, {"items", row_schema(4, title)}, {"maxItems", max_edits}}};
+}
+
+CutPlane cut_from(const JsonValue& given, const std::vector<double>& row) {
+  return {.normal = direction_from(given, row), .distance = metres_from_mm(row[3])};
+}
+
+json to_row(const CutPlane& cut) {
+  return {cut.normal.x(), cut.normal.y(), cut.normal.z(), rounded_mm(cut.distance)};
+}
+
+ErasedBall ball_from(const JsonValue& given, const std::vector<double>& row) {
+  if (row[3] <= 0) {
+    given.refuse("x, y, z and a radius above 0");
+  }
+  return {.centre = point_from(row, 0), .radius = metres_from_mm(row[3])};
+}
+
+json to_row(const ErasedBall& ball) {
+  return {rounded_mm(ball.centre.x()), rounded_mm(ball.centre.y()), rounded_mm(ball.centre.z()),
+          rounded_mm(ball.radius)};
+}
+
+Access laid_side(std::optional<LaidSide>& value) {
+  return {.read =
+              [&value](const JsonValue& given) {
+                if (given.json().is_null()) {
+                  value.reset();
+                  return;
+                }
+                const std::vector<double> row = row_from(given, 6);
+                value = LaidSide{.down = direction_from(given, row), .point = point_from(row, 3)};
+              },
+          .write = [&value]() -> json {
+            if (!value) {
+              return nullptr;
+            }
+            const auto& [down, point] = *value;
+            return {down.x(),
+                    down.y(),
+                    down.z(),
+                    rounded_mm(point.x()),
+                    rounded_mm(point.y()),
+                    rounded_mm(point.z())};
+          },
+          .schema = row_schema(6, "DX DY DZ X Y Z")};
 }
 
 std::vector<Field> capture_fields(ScanSettings& s, const SettingRanges& ranges) {
@@ -150,6 +256,40 @@ std::vector<Field> scan_fields(ScanSettings& s, const SettingRanges& ranges) {
   return joined(capture_fields(s, ranges), model_fields(s, ranges));
 }
 
+std::vector<Field> fields(EditSettings& settings) {
+  ModelEdits& edits = settings.edits;
+  return {
+      {.key = "cut_mm",
+       .unit = "mm",
+       .help = "planes that cut the model, each by the direction towards what is cut off and the "
+               "distance from the origin along it; the section is closed",
+       .access = rows_of_four<CutPlane>(edits.cuts, "X Y Z D", cut_from, to_row),
+       .method = "solid",
+       .default_text = "none"},
+      {.key = "erase_mm",
+       .unit = "mm",
+       .help = "balls that are erased, each by its centre and radius; the surface is closed",
+       .access = rows_of_four<ErasedBall>(edits.erased, "X Y Z R", ball_from, to_row),
+       .method = "solid",
+       .default_text = "none"},
+      {.key = "lay_mm",
+       .unit = "mm",
+       .help = "lays the model on another side: the direction that becomes down, and the point "
+               "that becomes the origin",
+       .access = laid_side(edits.lay),
+       .default_text = "as scanned"},
+      {.key = "scale",
+       .help = "factor of the model's size",
+       .access = number(edits.scale, min_scale, max_scale)},
+      {.key = "max_triangles",
+       .help = "number of triangles that the model may have: max_error_mm is raised until it has "
+               "no more, or as few as that can reach",
+       .access = whole(settings.max_triangles, min_triangles, max_triangles),
+       .method = "solid",
+       .default_text = "no limit"},
+  };
+}
+
 std::vector<Field> fields(Limits& limits) {
   return {
       {.key = "threads",
@@ -178,7 +318,7 @@ std::vector<Field> fields(ModelSettings& settings) {
                    .access = whole(settings.level, 0, max_levels),
                    .method = "intersection",
                    .default_text = "the leaves'"});
-  return joined(std::move(model), fields(settings.limits));
+  return joined(joined(std::move(model), fields(settings.edits)), fields(settings.limits));
 }
 
 std::string_view to_string(PoseSource source) {
@@ -214,6 +354,11 @@ ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limit
               settings.method == Method::solid ? solid_program_bytes : intersection_program_bytes};
 }
 
+void add_edits(ReconstructOptions& options, const EditSettings& settings) {
+  options.edits = settings.edits;
+  options.solid.max_triangles = settings.max_triangles;
+}
+
 json to_json(const ScanSettings& settings) {
   ScanSettings copy = settings;
   return to_json(fields(copy));
@@ -236,6 +381,17 @@ ScanSettings stored_settings_from(const JsonValue& object) {
   read_fields(keys, fields(settings, stored_ranges));
   keys.refuse_unread();
   return settings;
+}
+
+void check_edits(const JsonObject& keys, const EditSettings& edits, Method method) {
+  EditSettings copy = edits;
+  for (const Field& field : fields(copy)) {
+    const json value = field.access.write();
+    if (!field.method.empty() && field.method != to_string(method) && !value.empty()) {
+      keys.refuse(field.key, value,
+                  "left out: the method " + std::string(to_string(method)) + " has none");
+    }
+  }
 }
 
 void check_leaf(const JsonObject& keys, const ScanSettings& settings) {

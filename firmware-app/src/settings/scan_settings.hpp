@@ -72,10 +72,17 @@ struct Limits {
   std::size_t memory_bytes = half_of_memory();  ///< for the whole process; 0 is no limit
 };
 
+/// The settings of one model that are no settings of a scan.
+struct EditSettings {
+  ModelEdits edits = {};
+  std::optional<int> max_triangles = {};  ///< `solid` only
+};
+
 /// The settings of `octurn reconstruct`. Those of `model_options` are its defaults.
 struct ModelSettings {
   ScanSettings scan = {};
   std::optional<int> level = {};  ///< `intersection` only: draws the surface of this coarser level
+  EditSettings edits = {};
   Limits limits = {.memory_bytes = 0};
 };
 
@@ -89,11 +96,15 @@ std::vector<Field> scan_fields(ScanSettings& settings,
 /// The settings of a model, which need no new capture.
 std::vector<Field> model_fields(ScanSettings& settings,
                                 const SettingRanges& ranges = requested_ranges);
+std::vector<Field> fields(EditSettings& settings);
 std::vector<Field> fields(Limits& limits);
 std::vector<Field> fields(ModelSettings& settings);
 
 /// Sets the defaults of a model of a scan by laser line, which is finer than a depth sensor's.
 void use_laser_defaults(ScanSettings& settings);
+
+/// Adds edits to the options of a reconstruction.
+void add_edits(ReconstructOptions& options, const EditSettings& settings);
 
 /// Converts settings to the options of a reconstruction.
 ReconstructOptions reconstruct_options(const ScanSettings& settings, const Limits& limits);
@@ -113,6 +124,9 @@ ScanSettings settings_from(const nlohmann::json& object, const ScanSettings& def
 /// leaf, as in version 0.1.
 /// @throws Error  as above, with the code of `object`
 ScanSettings stored_settings_from(const JsonValue& object);
+
+/// Refuses edits that the method does not make. @param keys  as below
+void check_edits(const JsonObject& keys, const EditSettings& edits, Method method);
 
 /// Refuses a leaf larger than the root, or smaller than an octree's leaves in it can be.
 /// @param keys  the JSON of the settings, for messages

@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdlib>
 #include <ctime>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <sstream>
@@ -47,6 +48,7 @@ std::vector<Field> fields(BuildSettings& settings, const SettingRanges& ranges) 
        .help = "pose of the sensor, four rows of four numbers, in place of the configured one",
        .access = optional_pose(settings.platform_from_sensor),
        .default_text = "the scan's"});
+  std::ranges::move(fields(settings.edits), std::back_inserter(all));
   return all;
 }
 
@@ -61,6 +63,7 @@ BuildSettings build_settings_from(const json& object, const BuildSettings& defau
   read_fields(keys, fields(settings));
   check_leaf(keys, settings.scan);
   check_clip(keys, settings.scan);
+  check_edits(keys, settings.edits, settings.scan.method);
   keys.refuse_unread();
   return settings;
 }

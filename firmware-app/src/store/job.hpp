@@ -25,10 +25,11 @@
 
 namespace octurn {
 
-/// The settings of a build: the scan settings that need no new capture, and two of its own.
+/// The settings of a build: the scan settings that need no new capture, and some of its own.
 struct BuildSettings {
   ScanSettings scan = {};         ///< only the settings of `model_fields` are used
   std::optional<int> level = {};  ///< `intersection` only: draws the surface of this coarser level
+  EditSettings edits = {};
   /// Sensor pose to use instead of the scan's: optical frame to platform frame, metres.
   std::optional<Eigen::Isometry3d> platform_from_sensor = {};
 };

@@ -146,7 +146,9 @@ ModelScan scan_of_model(const ScanStore& store, const Job& job, int build) {
                 "GET /api/v1/scans/ID/builds lists its builds.");
   }
   const std::filesystem::path folder = store.merged_scan(job.id, built->poses);
-  ModelScan of{.folder = folder, .scan = scan_to_build(folder, built->settings)};
+  ModelScan of{.folder = folder,
+               .scan = scan_to_build(folder, built->settings),
+               .edits = built->settings.edits.edits};
   const auto& calibration = built->calibration;
   if (calibration && calibration->accepted && !calibration->confirms_told) {
     of.scan.solved = calibration->solved;

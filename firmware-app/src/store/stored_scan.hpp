@@ -60,6 +60,7 @@ Scan scan_to_build(const std::filesystem::path& folder, const BuildSettings& set
 struct ModelScan {
   std::filesystem::path folder = {};
   Scan scan = {};
+  ModelEdits edits = {};  ///< of the model
 };
 
 /// Returns the scan of a model, with the poses of sensor and object that the model was made with.

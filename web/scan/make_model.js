@@ -1,0 +1,27 @@
+// Makes what was done to a model in the view a model of its own, by a build.
+
+import * as api from '../api/api.js';
+import {buildShown} from './builds.js';
+import {composed, restOf} from './edits.js';
+import {build} from './model_actions.js';
+import {state} from '../page.js';
+import {readStl} from '../model/stl.js';
+import {scanOf} from '../state.js';
+
+/**
+ * @param {string} url  of the model in view
+ * @param {{up: number[], height: number}} pose  up in the model's frame, and the height of its origin
+ * @param {{cut: number | null, isLaid: boolean, erased: number[][]}} done  cut: height of the cut
+ */
+export async function makeModel(url, {up, height}, {cut, isLaid, erased}) {
+  const scan = scanOf(state, state.selected);
+  if (!scan) {
+    return;
+  }
+  const {clip_mm, ...settings} = {...buildShown(state, scan)?.settings};
+  const isOwnClip = JSON.stringify(clip_mm) === JSON.stringify(scan.settings.clip_mm);
+  const down = up.map((value) => -value);
+  const lay = isLaid ? {down, point: restOf((await readStl(await api.model(url, new AbortController().signal))).positions, up)} : null;
+  const edits = composed(settings, {cut: cut === null ? null : {normal: up, distance: cut - height}, erased, lay});
+  await build({...settings, ...isOwnClip ? {} : {clip_mm}, ...edits, choose: true});
+}

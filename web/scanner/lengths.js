@@ -2,6 +2,7 @@
 // model is off.
 
 import * as api from '../api/api.js';
+import {builds} from '../api/api_builds.js';
 import {copyOf, element, part, setText, show} from '../base/dom.js';
 import {when} from '../base/format.js';
 import {text} from '../base/texts.js';
@@ -53,13 +54,14 @@ async function measureModel() {
   setText(element('model-measured'), text('gauge.measuring'));
   try {
     const {gaugeSizes} = await import('../model/gauge.js');
-    const {newest} = await api.status();
+    const newest = (await api.status()).newest ?? '';
+    const {scale = 1} = (await builds(newest)).find(({chosen}) => chosen)?.settings ?? {};
     const {kind, sizes} = gaugeSizes(await readStl(await api.model(`scans/${newest}/Scan.stl`, new AbortController().signal)));
     if (sizes.length > 0) {
       clearLengths();
     }
     sizes.forEach((size, index) => {
-      part(rows()[index] ?? addLength(), '.on-model').value = size.toFixed(2);
+      part(rows()[index] ?? addLength(), '.on-model').value = (size / scale).toFixed(2);
     });
     setText(element('model-measured'), text(`gauge.${kind}`));
   } catch {

@@ -63,6 +63,9 @@ try {
       require((await daemon.ask('DELETE', `/api/v1/scans/${scan.id}`)).status === 204, `${scan.id} cannot be deleted`);
     }
     await daemon.ask('DELETE', '/api/v1/bin');
+    for (const key of (await daemon.get('/api/v1/keys')).keys) { // of which there may be 32
+      await daemon.ask('DELETE', `/api/v1/keys/${key.id}`);
+    }
   }
   await daemon.end();
   require(failed > 0, 'no call failed: the library is not in force');

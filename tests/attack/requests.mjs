@@ -83,6 +83,7 @@ const routes = [
   [1, 'GET', '/api/v1/webhooks'], [1, 'POST', '/api/v1/webhooks', {url: ['http://127.0.0.1:9/hook', 'ftp://x'], events: [['scan-finished'], ['x'], []]}],
   [1, 'DELETE', '/api/v1/webhooks/{webhook}'], [1, 'POST', '/api/v1/webhooks/{webhook}/test', {}],
   [1, 'GET', '/api/v1/printers'], [1, 'POST', '/api/v1/printers', printer], [1, 'DELETE', '/api/v1/printers/{printer}'],
+  [1, 'PATCH', '/api/v1/printers/{printer}', {fingerprint: [`sha256//${'A'.repeat(43)}=`, '', 'x', 7]}],
   [1, 'GET', '/api/v1/machine'], [1, 'PATCH', '/api/v1/machine', {name: ['one', '-n'], time_zone: ['Europe/Berlin', '../x']}],
   [1, 'PUT', '/api/v1/machine/clock', {unix_s: [1795824000, 0, 'now']}], [0.5, 'POST', '/api/v1/machine/restart', {}],
   [0.5, 'POST', '/api/v1/machine/shutdown', {}], [2, 'GET', '/api/v1/wifi'], [3, 'PUT', '/api/v1/wifi', wifi],

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "bennett/bennett_reconstructor.hpp"
+#include "calibrate/platform_plane.hpp"
 #include "laser/line_strip.hpp"
 #include "octurn/error.hpp"
 #include "octurn/scan_folder.hpp"
@@ -65,17 +66,10 @@ Eigen::Affine3d model_from_object(const ModelEdits& edits) {
   Eigen::Affine3d model_from_object = Eigen::Affine3d::Identity();
   model_from_object.scale(edits.scale);
   if (edits.lay) {
-    // Rodrigues' formula for the rotation of `down` to -Z.
-    const Eigen::Vector3d axis = edits.lay->down.cross(-Eigen::Vector3d::UnitZ());
-    const double cosine = -edits.lay->down.z();
-    Eigen::Matrix3d cross;
-    cross << 0, -axis.z(), axis.y(), axis.z(), 0, -axis.x(), -axis.y(), axis.x(), 0;
-    const bool is_turned_over = cosine < -1 + 1e-9;
-    const Eigen::Matrix3d turn =
-        is_turned_over
-            ? Eigen::Matrix3d(Eigen::Vector3d(1, -1, -1).asDiagonal())
-            : Eigen::Matrix3d(Eigen::Matrix3d::Identity() + cross + cross * cross / (1 + cosine));
-    model_from_object.linear() *= turn;
+    // Near half a turn, rounding alone would choose the axis of the smallest rotation.
+    const bool is_turned_over = edits.lay->down.z() > 1 - 1e-9;
+    const Eigen::Quaterniond half_turn_about_x(0, 1, 0, 0);
+    model_from_object.rotate(is_turned_over ? half_turn_about_x : rotation_to_z(-edits.lay->down));
     model_from_object.translation() = -model_from_object.linear() * edits.lay->point;
   }
   return model_from_object;

@@ -66,7 +66,7 @@ constexpr double agreeing_sigmas = 3;
 
 // Mahalanobis distance, squared: beyond it the optics are applied.
 constexpr double min_significance = 20;
-// Of the focal length alone, in spite of a pattern: two sigma.
+// The same where the focal length alone is solved, of an uneven sensor without a map: two sigma.
 constexpr double min_focal_significance = 4;
 // No Kinect is known to be further off: the depth images are those of another sensor, or scaled.
 constexpr double max_focal_error = 0.06;
@@ -303,8 +303,9 @@ std::string refuse_solution(const CalibrationReport& report, double last_step) {
   return {};
 }
 
-/// Whether the optics may be solved: nothing slipped or moved. A pattern that no map has corrected
-/// hides what is better known, and in few stops it looks like other optics.
+/// Whether the optics may be solved: nothing slipped or moved. A sensor that is uneven, and has no
+/// map, needs more than a few stops, as its pattern then looks like other optics; what is known of
+/// its optics already is more exact than such a turn.
 /// @param pattern  as of `solve_optics`
 bool shows_optics(const CalibrationTurn& turn, const CalibrationReport& report, double pattern) {
   const bool is_solvable = pattern > 0 ? !turn.optics && turn.angles.size() > few_stops
@@ -343,7 +344,8 @@ std::optional<TakenOptics> take_optics(CalibrationReport& report, TurnViews& vie
   report.optics_differ = true;
   report.platform_from_sensor = solved->axis.platform_from_sensor;
   report.position_sigma = solved->axis.position_sigma();
-  if (pattern == 0) {  // else it would refuse a pose that is no worse than the one before
+  // That of an uneven sensor would refuse poses that are no worse than without its optics.
+  if (pattern == 0) {
     report.direction_sigma = solved->axis.direction_sigma();
   }
   const std::vector<double> as_told(turn.angles.size(), 0.0);

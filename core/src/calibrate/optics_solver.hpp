@@ -39,9 +39,8 @@ struct OpticsSolution {
 /// @param plane  of the platform, with the turn's intrinsics
 /// @param turn   its intrinsics, and its optics if they are known
 /// @param start  solved with the turn's intrinsics: optical frame to platform frame
-/// @param pattern  of a sensor without a map, as the platform shows it, units of disparity: only
-/// the
-///                 focal length is solved. 0: a map corrects it, or there is none
+/// @param pattern  how uneven a sensor without a map sees the platform, units of disparity: then
+///                 the focal length alone is solved. 0: the sensor is even, or has a map
 /// @return nothing if too few readings of the object have a partner
 std::optional<OpticsSolution> solve_optics(TurnViews& views, const PlatformSamples& samples,
                                            const PlatformPlane& plane, const CalibrationTurn& turn,

@@ -153,8 +153,8 @@ std::optional<Candidate> find_plane(const std::vector<Vector3d>& points,
   return *lowest;
 }
 
-/// The smallest rotation that takes a vector to the z axis. Eigen's FromTwoVectors is the same, but
-/// takes ten seconds to compile.
+}  // namespace
+
 Eigen::Quaterniond rotation_to_z(const Vector3d& vector) {
   const Vector3d from = vector.normalized();
   const double cosine = from.z();
@@ -167,6 +167,8 @@ Eigen::Quaterniond rotation_to_z(const Vector3d& vector) {
   rotation.w() = norm * 0.5;
   return rotation;
 }
+
+namespace {
 
 /// One weighted least-squares fit of z = a x + b y + c in a frame in which the plane is level.
 void refine(PlatformPlane& plane, const std::vector<Vector3d>& points) {

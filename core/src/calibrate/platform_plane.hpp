@@ -47,6 +47,10 @@ PlatformPlane refine_platform_plane(const PlatformSamples& samples,
                                     const Eigen::Isometry3d& platform_from_sensor,
                                     const PlatformPlane& nearly);
 
+/// The smallest rotation that takes a vector to the z axis; half a turn about x if it is opposite.
+/// Eigen's FromTwoVectors is the same, but takes ten seconds to compile.
+Eigen::Quaterniond rotation_to_z(const Eigen::Vector3d& vector);
+
 /// The pose of least rotation from the configured one in which the plane is z = 0.
 Eigen::Isometry3d level(const Eigen::Isometry3d& platform_from_sensor, const PlatformPlane& plane);
 

@@ -46,15 +46,13 @@ std::vector<Rgb> model_colours(const FacetFile& facets, const std::filesystem::p
           {table.index(corners[0]), table.index(corners[1]), table.index(corners[2])});
     }
   });
+  std::span<const Vertex> vertices = table.vertices();
   std::vector<Vertex> placed;
   if (edits.move()) {
-    placed = placed_back(table.vertices(), edits);
+    placed = placed_back(vertices, edits);
+    vertices = placed;
   }
-  return vertex_colours(
-      folder, scan,
-      {.vertices = edits.move() ? std::span<const Vertex>(placed) : table.vertices(),
-       .triangles = triangles},
-      stop);
+  return vertex_colours(folder, scan, {.vertices = vertices, .triangles = triangles}, stop);
 }
 
 void expect_colours_of(const VertexTable& table, std::span<const Rgb> colours) {

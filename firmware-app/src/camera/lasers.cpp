@@ -17,15 +17,13 @@ namespace {
 /// The header with lines of lasers, whose errors are the sensor's and not the turntable's.
 GpioChip drive_lasers(const std::vector<NamedLine>& lines) {
   try {
-    return drive_header(lines);
+    return drive_header(lines,
+                        "Correct the lasers' lines in octurn.txt on the card: they are lines of "
+                        "GPIO9 to GPIO27 that nothing else uses.");
   } catch (const Error& error) {
     const bool is_absence = error.code() == ErrorCode::turntable_missing;
-    const bool is_of_settings = error.hint().find("octurn.json") != std::string::npos;
     throw Error(is_absence ? ErrorCode::sensor_missing : ErrorCode::sensor_failed,
-                std::string("lasers: ") + error.what(),
-                is_of_settings ? "Correct the lasers' lines in octurn.txt on the card: they are "
-                                 "lines of GPIO9 to GPIO27 that nothing else uses."
-                               : error.hint());
+                std::string("lasers: ") + error.what(), error.hint());
   }
 }
 

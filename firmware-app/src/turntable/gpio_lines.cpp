@@ -56,16 +56,19 @@ std::optional<unsigned> find_line(const GpioChip& header, const std::string& nam
   return offset ? offset : header.find_offset(name);
 }
 
-unsigned free_line(const GpioChip& chip, const std::string& name) {
+/// @param cure  as of `drive_header`
+unsigned free_line(const GpioChip& chip, const std::string& name, const std::string& cure) {
   const std::optional<unsigned> offset = find_line(chip, name);
   if (!offset) {
-    throw Error(ErrorCode::turntable_failed, "the GPIO header has no line " + name,
-                "Correct the lines in octurn.json; they are called GPIO2 to GPIO27.");
+    throw Error(
+        ErrorCode::turntable_failed, "the GPIO header has no line " + name,
+        cure.empty() ? "Correct the lines in octurn.json; they are called GPIO2 to GPIO27." : cure);
   }
   if (const std::optional<std::string> other = chip.find_user(*offset)) {
     throw Error(ErrorCode::turntable_failed, "line " + name + " is in use by " + *other,
                 *other == gpio_user ? "End the other Octurn first."
-                                    : "End what uses it, or choose another line in octurn.json.");
+                : cure.empty()      ? "End what uses it, or choose another line in octurn.json."
+                                    : cure);
   }
   return *offset;
 }
@@ -104,13 +107,13 @@ HeaderUse read_header_use(const std::vector<NamedLine>& lines) {
   }
 }
 
-GpioChip drive_header(const std::vector<NamedLine>& lines) {
+GpioChip drive_header(const std::vector<NamedLine>& lines, const std::string& cure) {
   GpioChip chip = header_chip();
   try {
     std::vector<OutputLine> outputs;
     outputs.reserve(lines.size());
     for (const NamedLine& line : lines) {
-      outputs.push_back({.offset = free_line(chip, line.name), .high = line.high});
+      outputs.push_back({.offset = free_line(chip, line.name, cure), .high = line.high});
     }
     chip.drive(outputs, gpio_user);
   } catch (const std::system_error& error) {

@@ -46,6 +46,7 @@ inline constexpr const char* gpio_user = "octurn";
 /// @throws Error "turntable-missing"  if this machine has no such header
 /// @throws Error "turntable-failed"   if a line does not exist, is in use or cannot be accessed:
 ///                                    names the line and its user
-GpioChip drive_header(const std::vector<NamedLine>& lines);
+/// @param cure  hint of an error that other lines would cure; empty: that of a turntable's lines
+GpioChip drive_header(const std::vector<NamedLine>& lines, const std::string& cure = {});
 
 }  // namespace octurn

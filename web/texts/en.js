@@ -891,7 +891,7 @@ export const texts = {
   'lens.kinect-found-about': 'From {views}; the board’s corners lie {rms} pixels from where these optics show them.',
   'lens.kinect-found-hint': 'Keep them, then measure the pose again with a turn: later scans are then true to size.',
   'lens.kinect-refused': 'The Kinect’s optics are not known',
-  'lens.kinect-refused-hint': 'The optics in use stay. Check that the sheet is flat and the side of its squares is right, and show the board again.',
+  'lens.kinect-refused-hint': 'The optics in use stay. Check that the sheet is flat and the side of its squares is right, and show the board again: tilted each way, at each edge of the picture, and still for two seconds each time.',
   'lens.depth-scale': 'Scale of the depths',
   'failure.turn': 'The turn did not start',
   'failure.cancel-turn': 'The turn was not cancelled',

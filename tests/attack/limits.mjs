@@ -120,7 +120,8 @@ try {
   require(killed() === 0, 'the kernel has killed a process for its memory');
   countTasks();
   require(refused() === 0, `the kernel has refused ${refused()} threads`);
-  require(threads > before + 16, `only ${threads} threads were seen, of which ${before} before: the setting is not in force`);
+  require(threads > before + 16,
+      `only ${threads} threads were seen, of which ${before} before: the setting is not in force`);
   const [status] = await daemon.end();
   require(status === 0, `the daemon ends with ${status}`);
   console.log(`counted: limits: of ${Math.round(share * machine)} MB and ${tasks} tasks at most ` +

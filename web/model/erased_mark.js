@@ -8,7 +8,8 @@ const colour = 0xff6a4d;
 export function erasedMark(balls_mm) {
   const mark = new Group();
   for (const [x, y, z, radius] of balls_mm) {
-    const ball = new Mesh(new SphereGeometry(radius, 32, 16), new MeshBasicMaterial({color: colour, transparent: true, opacity: 0.45}));
+    const ball = new Mesh(new SphereGeometry(radius, 32, 16),
+        new MeshBasicMaterial({color: colour, transparent: true, opacity: 0.45}));
     ball.position.set(x, y, z);
     mark.add(ball);
   }

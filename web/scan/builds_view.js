@@ -56,7 +56,9 @@ function explainFields() {
   }
 }
 
-/** @param {Settings & import('./edits.js').Edits & {max_error_mm?: number, parts?: string, level?: number | null}} settings */
+/**
+ * @param {Settings & import('./edits.js').Edits & {max_error_mm?: number, parts?: string, level?: number | null}} settings
+ */
 function fill(settings) {
   edits = settings;
   element('build-scale').value = settings.scale ?? 1;

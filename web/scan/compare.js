@@ -115,7 +115,8 @@ async function compare() {
       mine.onmessage = ({data}) => done(data);
       mine.onerror = () => fail(new Error(text('compare.failed')));
     });
-    mine.postMessage({model, reference: wanted, isPlaced: !file && build.selectedOptions[0].dataset.place === place}, [model.positions.buffer, wanted.positions.buffer]);
+    const isPlaced = !file && build.selectedOptions[0].dataset.place === place;
+    mine.postMessage({model, reference: wanted, isPlaced}, [model.positions.buffer, wanted.positions.buffer]);
     const found = await compared;
     if (worker === mine) {
       result = /** @type {any} */ (found);
@@ -161,7 +162,8 @@ export function showCompare() {
   place = builds?.rows.find(({isShown}) => isShown)?.place ?? '';
   const others = (builds?.rows ?? []).filter(({isShown}) => !isShown);
   show(element('compare-builds'), others.length > 0);
-  list(element('compare-build'), [{number: -1, name: text('compare.no-build'), download: '', place: ''}, ...others], ({number}) => String(number), 'compare-option',
+  const none = {number: -1, name: text('compare.no-build'), download: '', place: ''};
+  list(element('compare-build'), [none, ...others], ({number}) => String(number), 'compare-option',
       (option, row) => {
         setText(option, row.name);
         option.value = row.download;

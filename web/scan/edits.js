@@ -3,13 +3,21 @@
 // Positions of the settings are those of the model as scanned, in millimetres. The model in view may have been laid and
 // scaled before.
 
-/** @typedef {{cut_mm?: number[][], erase_mm?: number[][], lay_mm?: number[] | null, scale?: number, max_triangles?: number | null}} Edits */
+/**
+ * @typedef {Object} Edits
+ * @property {number[][]} [cut_mm]
+ * @property {number[][]} [erase_mm]
+ * @property {number[] | null} [lay_mm]
+ * @property {number} [scale]
+ * @property {number | null} [max_triangles]
+ */
 
 /**
  * @typedef {Object} Done  in the frame of the model in view
  * @property {{normal: number[], distance: number} | null} cut  what lies beyond the plane in its direction is cut off
  * @property {number[][]} erased  balls: centre and radius
- * @property {{down: number[], point: number[]} | null} lay  the direction that becomes down, and the point that becomes the origin
+ * @property {{down: number[], point: number[]} | null} lay  the direction that becomes down, and the point that becomes
+ *     the origin
  */
 
 /** @param {number[]} a @param {number[]} b */
@@ -39,12 +47,17 @@ function placeOf({lay_mm, scale}) {
  */
 export function composed(before, {cut, erased, lay}) {
   const {rows, origin, scale} = placeOf(before);
-  const turnedBack = (/** @type {number[]} */ v) => [0, 1, 2].map((axis) => rows[0][axis] * v[0] + rows[1][axis] * v[1] + rows[2][axis] * v[2]);
+  const turnedBack = (/** @type {number[]} */ v) =>
+    [0, 1, 2].map((axis) => rows[0][axis] * v[0] + rows[1][axis] * v[1] + rows[2][axis] * v[2]);
   const placedBack = (/** @type {number[]} */ p) => turnedBack(p).map((value, axis) => value / scale + origin[axis]);
-  const planes = cut ? [turnedBack(cut.normal)].map((normal) => [...normal, cut.distance / scale + dot(normal, origin)]) : [];
+  const normal = cut ? turnedBack(cut.normal) : [];
+  const planes = cut ? [[...normal, cut.distance / scale + dot(normal, origin)]] : [];
   return {
     cut_mm: [...before.cut_mm ?? [], ...planes],
-    erase_mm: [...before.erase_mm ?? [], ...erased.map(([x, y, z, radius]) => [...placedBack([x, y, z]), radius / scale])],
+    erase_mm: [
+      ...before.erase_mm ?? [],
+      ...erased.map(([x, y, z, radius]) => [...placedBack([x, y, z]), radius / scale]),
+    ],
     lay_mm: lay ? [...turnedBack(lay.down), ...placedBack(lay.point)] : before.lay_mm ?? null,
     scale,
   };
@@ -74,7 +87,10 @@ export function restOf(positions, up) {
   return [0, 1, 2].map((axis) => at[0] * u[axis] + at[1] * v[axis] + at[2] * up[axis]);
 }
 
-/** The planes of a box. @param {(number | null)[]} box_mm  its smallest x, y, z and its largest; null: open on that side */
+/**
+ * The planes of a box.
+ * @param {(number | null)[]} box_mm  its smallest x, y, z and its largest; null: open on that side
+ */
 export const planesOf = (box_mm) => box_mm.flatMap((at, index) => {
   if (at === null) {
     return [];

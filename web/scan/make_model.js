@@ -21,7 +21,8 @@ export async function makeModel(url, {up, height}, {cut, isLaid, erased}) {
   const {clip_mm, ...settings} = {...buildShown(state, scan)?.settings};
   const isOwnClip = JSON.stringify(clip_mm) === JSON.stringify(scan.settings.clip_mm);
   const down = up.map((value) => -value);
-  const lay = isLaid ? {down, point: restOf((await readStl(await api.model(url, new AbortController().signal))).positions, up)} : null;
+  const corners = async () => (await readStl(await api.model(url, new AbortController().signal))).positions;
+  const lay = isLaid ? {down, point: restOf(await corners(), up)} : null;
   const edits = composed(settings, {cut: cut === null ? null : {normal: up, distance: cut - height}, erased, lay});
   await build({...settings, ...isOwnClip ? {} : {clip_mm}, ...edits, choose: true});
 }

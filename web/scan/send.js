@@ -5,7 +5,15 @@ import {element, setText, show} from '../base/dom.js';
 import {sentence} from '../base/format.js';
 import {text} from '../base/texts.js';
 
-/** @typedef {{printer: string, state: 'sending' | 'sent' | 'failed' | 'cancelled', progress: number, detail: string, hint: string, fingerprint: string}} Upload */
+/**
+ * @typedef {Object} Upload
+ * @property {string} printer
+ * @property {'sending' | 'sent' | 'failed' | 'cancelled'} state
+ * @property {number} progress
+ * @property {string} detail
+ * @property {string} hint
+ * @property {string} fingerprint  of a certificate that can be trusted; empty: none can
+ */
 
 const pause = 500;  // milliseconds between polls
 
@@ -31,7 +39,7 @@ function say(words, tone) {
 }
 
 /** @type {() => Promise<void>} */
-let trust = async () => {};  // the certificate that "Trust it, and send" stands for
+let trust = async () => {};  // what "Trust it and send" does first
 
 const shownScan = () => scanIn(element('download').getAttribute('href') ?? '');
 

@@ -1,5 +1,5 @@
-// Tools for the model in the large picture: measure between two points, cut it open, lay it on another side, erase a part,
-// and make a model of that.
+// Tools for the model in the large picture: measure between two points, cut it open, lay it on another side, erase a
+// part, and make a model of that.
 
 import {element, pressed, setText, show} from '../base/dom.js';
 import * as format from '../base/format.js';
@@ -19,7 +19,7 @@ let measuring = null;
 let lying = 'upright';
 /** @type {number[][] | null} balls to erase, in the model's frame; null: the tool is off */
 let erasing = null;
-/** @type {{url: string | null, paint: Paint | null, isSolid: boolean}} the STL of the model that can be painted and edited */
+/** @type {{url: string | null, paint: Paint | null, isSolid: boolean}} the STL of the model that can be painted, edited */
 let painted = {url: null, paint: 'colours', isSolid: false};
 
 /** @param {string} words  shown on the picture; empty: none */
@@ -165,7 +165,8 @@ export function prepareTools(shown) {
   element('erase').addEventListener('click', () => setErase(erasing ? null : []));
   element('erase-radius').addEventListener('input', () => {
     const radius = element('erase-radius').valueAsNumber;
-    erasing && setErase(erasing.map((ball, index) => index + 1 === erasing?.length ? [...ball.slice(0, 3), radius] : ball));
+    const last = erasing?.at(-1);
+    erasing && setErase(last ? [...erasing.slice(0, -1), [...last.slice(0, 3), radius]] : erasing);
   });
   element('make-model').addEventListener('click', make);
   element('cut-share').addEventListener('input', () => cutAt(element('cut-share').valueAsNumber));

@@ -6,7 +6,9 @@ import {fetchFragment} from '../base/fragment.js';
 import {sentence} from '../base/format.js';
 import {text} from '../base/texts.js';
 
-/** @typedef {{id: string, name: string, kind: string, address: string, has_key: boolean, fingerprint: string}} Printer */
+/**
+ * @typedef {{id: string, name: string, kind: string, address: string, has_key: boolean, fingerprint: string}} Printer
+ */
 /** @typedef {{outcome: 'waiting' | 'delivered' | 'failed', event: string, time: string | null, trouble: string}} Told */
 /** @typedef {{id: string, address: string, events: string[], last: Told | null}} Webhook */
 

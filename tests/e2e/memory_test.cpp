@@ -216,13 +216,16 @@ TEST(Memory, IsLimitedByTheConfigurationOfTheDaemon) {
   EXPECT_LT(memory_for_fine_models(R"({"memory_limit_mb": 32, "threads": 1})"), 32 * mb);
 }
 
-// A recorded sensor, as the simulated one takes 13 MB more, which an appliance does not.
+// A recorded sensor, as the simulated one takes 13 MB more, which an appliance does not. The two
+// frames of its first stop differ, so the scan waits for 90 frames at each stop, and keeps none.
 TEST(Memory, OfTheDaemonStaysBelowItsLimitWithARecordedSensor) {
   const TemporaryFolder folder;
   const fs::path turn = folder.path() / "turn";
   Program record({octurn_program(), "record", "--simulate", "--simulate-unit", "0",
                   "--simulate-speed", "20", "-o", turn, "--snapshots", "3", "--frames", "2"});
   ASSERT_EQ(record.wait(), 0) << record.errors();
+  fs::copy_file(turn / "frames/000002.png", turn / "frames/000001.png",
+                fs::copy_options::overwrite_existing);
   put(folder.path() / "octurn.json", R"({"memory_limit_mb": 48, "threads": 2})");
   Daemon daemon(folder.path(), {"--config", folder.path() / "octurn.json", "--sensor", turn});
   const std::string scan = daemon.start(R"({"snapshots": 3, "frames": 2, "leaf_size_mm": 0.5})");

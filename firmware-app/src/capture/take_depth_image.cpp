@@ -41,6 +41,25 @@ std::vector<std::size_t> common(const std::vector<std::size_t>& one,
   return both;
 }
 
+/// Reads the next frame whose exposure ended after `settled`; returns none if stopped first.
+std::optional<TimedFrame> read_frame(DepthSensor& sensor, Clock::time_point settled,
+                                     const std::stop_token& stop, const OnFrame& on_frame) {
+  for (int stale = 0; stale <= max_stale_frames; ++stale) {
+    std::optional<TimedFrame> timed = sensor.read(stop);
+    if (!timed) {
+      return std::nullopt;
+    }
+    if (timed->time > settled) {
+      on_frame(timed->frame);
+      return timed;
+    }
+  }
+  throw Error(
+      ErrorCode::sensor_failed,
+      sensor.name() + ": its frames arrive too late; they are from before the platform stopped",
+      "Unplug the sensor, and plug it in again.");
+}
+
 /// Reads frames whose exposure ended after `settled`, and more if they all lost the same pixels;
 /// returns none if stopped first.
 std::vector<TimedFrame> read_frames(DepthSensor& sensor, std::size_t count,
@@ -48,22 +67,14 @@ std::vector<TimedFrame> read_frames(DepthSensor& sensor, std::size_t count,
                                     const OnFrame& on_frame) {
   std::vector<TimedFrame> frames;
   std::vector<std::size_t> lost;  // in all frames
-  for (int stale = 0; frames.size() < count ||
-                      (lost.size() > max_lost_pixels && frames.size() < count + max_more_frames);) {
-    std::optional<TimedFrame> timed = sensor.read(stop);
+  while (frames.size() < count ||
+         (lost.size() > max_lost_pixels && frames.size() < count + max_more_frames)) {
+    std::optional<TimedFrame> timed = read_frame(sensor, settled, stop, on_frame);
     if (!timed) {
       return {};
     }
-    if (timed->time > settled) {
-      on_frame(timed->frame);
-      lost = frames.empty() ? timed->lost : common(lost, timed->lost);
-      frames.push_back(*std::move(timed));
-    } else if (++stale > max_stale_frames) {
-      throw Error(
-          ErrorCode::sensor_failed,
-          sensor.name() + ": its frames arrive too late; they are from before the platform stopped",
-          "Unplug the sensor, and plug it in again.");
-    }
+    lost = frames.empty() ? timed->lost : common(lost, timed->lost);
+    frames.push_back(*std::move(timed));
   }
   return frames;
 }
@@ -96,15 +107,14 @@ std::vector<DepthFrame> read_still_frames(Rig& rig, const PlatformLook& look, in
   DepthSensor& sensor = rig.sensor();
   const Clock::time_point settled = Clock::now();
   int waited = rig.settling().frames();
-  const auto read = [&](int number) {
-    return with_lost_pixels_filled(
-        read_frames(sensor, static_cast<std::size_t>(number), settled, stop, on_frame));
-  };
-  if (waited > 0 && read(waited).empty()) {
-    return {};
+  for (int i = 0; i < waited; ++i) {
+    if (!read_frame(sensor, settled, stop, on_frame)) {
+      return {};
+    }
   }
   for (;; waited += count) {
-    std::vector<DepthFrame> frames = read(count);
+    std::vector<DepthFrame> frames = with_lost_pixels_filled(
+        read_frames(sensor, static_cast<std::size_t>(count), settled, stop, on_frame));
     const bool is_still = frames.size() < 2 || !is_swinging(look, frames);
     if (!is_still && waited + count <= max_settling_frames) {
       continue;

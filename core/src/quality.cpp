@@ -74,9 +74,10 @@ double focal_sigma(const Scan& scan, const std::optional<SolvedPose>& solved,
 enum class Link { platform, turn, pose, sight, model };
 
 Link find_link(const QualityReason& reason) {
-  constexpr std::array<std::pair<std::string_view, Link>, 11> links{
+  constexpr std::array<std::pair<std::string_view, Link>, 12> links{
       {{"empty", Link::platform},
        {"too-low", Link::platform},
+       {"lasers-exchanged", Link::turn},
        {"turntable", Link::turn},
        {"alike", Link::turn},
        {"top-unseen", Link::sight},
@@ -157,14 +158,16 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
 void judge_findings(Judgement& judgement, std::span<const CalibrationFinding> findings) {
   constexpr std::array<std::string_view, 5> of_the_turntable{"slip", "turn-not-whole", "still",
                                                              "turn-ratio", "turn-unknown"};
-  constexpr std::array<std::string_view, 5> others{"moved", "focal-length", "optics", "alike",
-                                                   "stops-disagree"};
+  constexpr std::array<std::string_view, 6> others{"moved", "focal-length",   "optics",
+                                                   "alike", "stops-disagree", "lasers-exchanged"};
   for (const CalibrationFinding& finding : findings) {
     const bool is_turntable = std::ranges::count(of_the_turntable, finding.code) > 0;
     if (!is_turntable && std::ranges::count(others, finding.code) == 0) {
       continue;
     }
-    const bool is_bad = is_turntable && finding.code != "slip" && finding.code != "turn-not-whole";
+    const bool is_bad =
+        (is_turntable && finding.code != "slip" && finding.code != "turn-not-whole") ||
+        finding.code == "lasers-exchanged";
     judgement.add(is_bad ? Verdict::bad : Verdict::look,
                   {.code = is_turntable ? "turntable" : finding.code,
                    .detail = finding.detail,

@@ -110,7 +110,8 @@ TEST(Judge, NamesACauseAndNotWhatFollowsFromIt) {
   EXPECT_EQ(codes(judge(scan, model)), (Codes{"stops-disagree", "floats", "little-seen"}));
   for (const auto& [found, code] :
        {std::pair("turn-ratio", "turntable"), std::pair("slip", "turntable"),
-        std::pair("moved", "moved"), std::pair("alike", "alike")}) {
+        std::pair("moved", "moved"), std::pair("alike", "alike"),
+        std::pair("lasers-exchanged", "lasers-exchanged")}) {
     const std::vector<CalibrationFinding> findings{finding(found)};
     const Quality quality = judge(scan, model, findings);
     EXPECT_EQ(codes(quality), Codes{code});

@@ -384,6 +384,7 @@ export const texts = {
   'reason.focal-length.seen_px.shorter_share.told_px': 'The sensor’s focal length is {shorter_share} shorter than configured: {seen_px} pixels instead of {told_px}.',
   'reason.warm-up.map_min.scan_min': 'The sensor had been on for {scan_min} at this scan, and for {map_min} when its map was made. Its error changes while it warms up.',
   'reason.hollow-filled.hollow_mm': 'A hollow is filled up to {hollow_mm} below its rim: no stop saw its floor.',
+  'reason.lasers-exchanged': 'The lasers are exchanged: each line lies in the plane of the other laser.',
   'reason.little-seen.gap_deg': 'The platform turned by {gap_deg} without a stop: that side of the object was not seen.',
   'reason.little-seen.unseen_share': '{unseen_share} of the surface above the base was not seen, and is filled in.',
   'reason.moved.empty_share.stop': 'At stop {stop} {empty_share} of what was seen lies where other stops saw empty space.',

@@ -167,6 +167,30 @@ std::optional<CalibrationFinding> find_turn(const RigSolver& solver, const Laser
              : std::nullopt;
 }
 
+/// Returns the finding of two lasers that are wired to each other's lines: each with the other's
+/// plane, they fit.
+std::optional<CalibrationFinding> find_exchange(const LaserLines& lines, LaserRig rig,
+                                                const Limits& limits, int threads,
+                                                const std::stop_token& stop) {
+  if (rig.lasers.size() != 2) {
+    return std::nullopt;
+  }
+  std::swap(rig.lasers[0].normal, rig.lasers[1].normal);
+  std::swap(rig.lasers[0].distance, rig.lasers[1].distance);
+  const RigSolver solver(lines, rig, threads, stop);
+  if (solver.platform_points() < min_platform_points) {
+    return std::nullopt;
+  }
+  const RigSolution best = solve_best(solver);
+  if (median(best.platform_heights) > limits.height || lasers_disagree(best, limits)) {
+    return std::nullopt;
+  }
+  return CalibrationFinding{
+      .code = "lasers-exchanged",
+      .detail = "the lasers are exchanged: each line lies in the plane of the other laser",
+      .hint = "Exchange the lasers' GPIO lines in the settings, or their wires."};
+}
+
 /// Returns why a solution is refused; empty if it is accepted.
 std::string refusal(const RigSolution& solution, const CalibrationReport& report,
                     const std::vector<Laser>& configured, const Limits& limits) {
@@ -188,6 +212,14 @@ std::string refusal(const RigSolution& solution, const CalibrationReport& report
     return "the solved rig is too far from the configured one";
   }
   return "";
+}
+
+/// Gives the report a fault, if one was found, as its finding and its reason.
+void name_fault(CalibrationReport& report, std::optional<CalibrationFinding> fault) {
+  if (fault) {
+    report.reason = fault->detail;
+    report.findings.push_back(*std::move(fault));
+  }
 }
 
 /// Returns the scan with at most 100 stops, evenly spaced over the turn. More stops hardly improve
@@ -218,8 +250,11 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   LaserCalibration calibration{.lasers = configured.lasers};
   CalibrationReport& report = calibration.report;
   report.platform_from_sensor = configured.platform_from_sensor;
+  const Limits limits(lines.pixel());
+  const auto exchange = [&] { return find_exchange(lines, configured, limits, threads, stop); };
   if (solver.platform_points() < min_platform_points) {
     report.reason = "the lasers' lines are not seen on the platform";
+    name_fault(report, exchange());
     return calibration;
   }
   const RigSolution as_told = solver.as_told();
@@ -233,14 +268,16 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   report.platform_from_sensor = best.rig.platform_from_sensor;
   compare_poses(configured.platform_from_sensor, report);
   set_sigmas(best, report);
-  const Limits limits(lines.pixel());
   report.reason = refusal(best, report, configured.lasers, limits);
   const bool is_told_wrong =
       lasers_disagree(best, limits) || best.surface_distances.size() < min_pairs;
-  if (auto wrong = is_told_wrong ? find_turn(solver, best.rig, scan.shots.size()) : std::nullopt) {
-    report.reason = wrong->detail;
-    report.findings.push_back(*std::move(wrong));
-  } else if (lasers_disagree(best, limits)) {
+  if (is_told_wrong) {
+    name_fault(report, find_turn(solver, best.rig, scan.shots.size()));
+  }
+  if (!report.reason.empty() && report.findings.empty()) {
+    name_fault(report, exchange());
+  }
+  if (lasers_disagree(best, limits) && report.findings.empty()) {
     report.findings.push_back(describe_disagreement(disagreement(best)));
   }
   report.accepted = report.reason.empty();

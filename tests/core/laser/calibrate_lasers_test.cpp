@@ -172,6 +172,22 @@ TEST(CalibrateLasers, NamesNoOtherWayOfAPlatformThatTurnedAsItShould) {
   EXPECT_TRUE(Turn::of_two_balls().solve(Turn::of_two_balls().truth()).report.findings.empty());
 }
 
+TEST(CalibrateLasers, NamesLasersThatAreExchanged) {
+  Scan told = Turn::of_two_balls().truth();
+  std::vector<Laser>& lasers = told.laser->lasers;
+  std::swap(lasers[0].normal, lasers[1].normal);
+  std::swap(lasers[0].distance, lasers[1].distance);
+  std::swap(lasers[0].source, lasers[1].source);
+  lasers[0] = turned(lasers[0], 0.1);
+
+  const LaserCalibration found = Turn::of_two_balls().solve(told);
+
+  EXPECT_FALSE(found.report.accepted);
+  ASSERT_EQ(found.report.findings.size(), 1U) << found.report.reason;
+  EXPECT_EQ(found.report.findings[0].code, "lasers-exchanged") << found.report.reason;
+  EXPECT_EQ(found.report.reason, found.report.findings[0].detail);
+}
+
 TEST(CalibrateLasers, IsTheSameForAnyThreads) {
   const Scan& truth = Turn::of_two_balls().truth();
   Scan told = truth;

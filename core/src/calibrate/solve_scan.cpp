@@ -44,11 +44,7 @@ ScanSolution solve_scan(const std::filesystem::path& folder, const Scan& scan,
   const LaserCalibration found =
       scan.laser ? calibrate_lasers(folder, scan, threads, stop)
                  : LaserCalibration{.report = solve_pose(scan, snapshots, threads)};
-  CalibrationReport report = found.report;
-  if (scan.laser) {
-    // Only some of the stops have depth images to solve the angles: all stay as configured.
-    report.slipped.clear();
-  }
+  const CalibrationReport& report = found.report;
   ScanSolution solution{
       .report = report,
       .solved = to_solved_pose(report),

@@ -191,16 +191,7 @@ std::optional<CalibrationFinding> find_step(const StopOffsets& solved) {
       explained_by_step(offsets, static_cast<std::size_t>(at) + 1) < min_explained) {
     return std::nullopt;
   }
-  const int stop = static_cast<int>(at) + 1;
-  const double step = steps[static_cast<std::size_t>(at)];
-  return CalibrationFinding{
-      .code = "slip",
-      .detail = "at stop " + std::to_string(stop) + " the platform stood " + degrees_text(step, 1) +
-                " from where it should",
-      .hint = "Look whether the platform slipped or the motor lost a step; turn more slowly.",
-      .stop = stop,
-      .angle = step,
-      .parameters = {{"stop", static_cast<double>(stop)}, {"off_deg", degrees_from_radians(step)}}};
+  return describe_slip(static_cast<int>(at) + 1, steps[static_cast<std::size_t>(at)]);
 }
 
 std::optional<CalibrationFinding> find_drift(const std::vector<double>& angles,
@@ -238,6 +229,17 @@ std::optional<CalibrationFinding> find_drift(const std::vector<double>& angles,
 }
 
 }  // namespace
+
+CalibrationFinding describe_slip(int stop, double angle) {
+  return {.code = "slip",
+          .detail = "at stop " + std::to_string(stop) + " the platform stood " +
+                    degrees_text(angle, 1) + " from where it should",
+          .hint = "Look whether the platform slipped or the motor lost a step; turn more slowly.",
+          .stop = stop,
+          .angle = angle,
+          .parameters = {{"stop", static_cast<double>(stop)},
+                         {"off_deg", degrees_from_radians(angle)}}};
+}
 
 std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
                                               const Eigen::Isometry3d& platform_from_sensor,

@@ -22,6 +22,9 @@ std::optional<StopOffsets> solve_stop_offsets(const TurnViews& turn,
                                               const Eigen::Isometry3d& platform_from_sensor,
                                               int threads);
 
+/// The finding "slip". @param angle  radians
+CalibrationFinding describe_slip(int stop, double angle);
+
 /// Findings from the offsets: each step between neighbouring stops is a "slip", a steady drift is
 /// "turn-not-whole".
 std::vector<CalibrationFinding> find_slips(const std::vector<double>& angles,

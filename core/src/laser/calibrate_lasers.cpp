@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "calibrate/stop_offsets.hpp"
 #include "calibrate/turn_ratio.hpp"
 #include "io/number_text.hpp"
 #include "laser/line_strip.hpp"
@@ -49,6 +50,10 @@ constexpr double max_disagreement = 0.0004;
 constexpr double max_pixels = 0.5;
 constexpr double max_shift = 0.04;  // metres
 constexpr double max_turn_deg = 6;
+constexpr double min_slip_deg = 0.3;
+constexpr double settled_slip_deg = 0.02;
+// Measured: 0.3 to 0.7 with a slip, 0.01 to 0.08 without one.
+constexpr double min_explained_by_slip = 0.2;
 constexpr double lever = 0.05;  // metres above the platform, where `position_sigma` holds
 
 // The configured rig is kept if a solution changes the fit by no more than this share. Two lasers
@@ -86,6 +91,33 @@ RigSolution solve_best(const RigSolver& solver) {
     other = solver.solve(trusted_in_part);
     if (other.cost < max_cost_ratio_in_part * best.cost) {
       best = std::move(other);
+    }
+  }
+  return best;
+}
+
+/// Finds where the platform slipped, and solves the rig with the angles at which it stood.
+/// @param best     solved with the configured angles
+/// @param slipped  radians at each stop, all 0; set
+RigSolution solve_slips(RigSolver& solver, RigSolution best, std::vector<double>& slipped) {
+  constexpr int most_slips = 8;
+  constexpr int passes = 10;  // as a point's nearest neighbours are others once it has moved
+  for (int slips = 0; slips < most_slips; ++slips) {
+    std::optional<Slip> slip = solver.find_slip(best.rig);
+    if (!slip || std::abs(slip->angle) < radians_from_degrees(min_slip_deg) ||
+        slip->explained < min_explained_by_slip) {
+      break;
+    }
+    for (int pass = 0; slip && pass < passes; ++pass) {
+      for (std::size_t stop = slip->stop; stop < slipped.size(); ++stop) {
+        slipped[stop] += slip->angle;
+      }
+      solver.set_slipped(slipped);
+      if (std::abs(slip->angle) < radians_from_degrees(settled_slip_deg)) {
+        break;
+      }
+      best = solve_best(solver);
+      slip = solver.find_slip(best.rig, slip->stop);
     }
   }
   return best;
@@ -222,11 +254,29 @@ void name_fault(CalibrationReport& report, std::optional<CalibrationFinding> fau
   }
 }
 
-/// Returns the scan with at most 100 stops, evenly spaced over the turn. More stops hardly improve
-/// the fit, and reading a stop takes as long as reading it for the model.
-Scan thinned(const Scan& scan) {
+/// The step between the stops that are read: at most 100 of them, evenly spaced over the turn. More
+/// hardly improve the fit, and reading a stop takes as long as reading it for the model.
+std::size_t step_between(const Scan& scan) {
   constexpr std::size_t most_stops = 100;
-  const std::size_t step = (scan.shots.size() + most_stops - 1) / most_stops;
+  return (scan.shots.size() + most_stops - 1) / most_stops;
+}
+
+/// Reports where the platform slipped.
+/// @param slipped  radians, at each of the stops that were read
+void add_slips(CalibrationReport& report, const std::vector<double>& slipped, std::size_t step,
+               std::size_t stops) {
+  for (std::size_t stop = 0; stop < stops; ++stop) {
+    report.slipped.push_back(slipped[stop / step]);
+    const double slip = stop == 0 ? 0 : report.slipped[stop] - report.slipped[stop - 1];
+    if (slip != 0) {
+      report.findings.push_back(describe_slip(static_cast<int>(stop), slip));
+    }
+  }
+}
+
+/// Returns the scan with some of its stops.
+/// @param step  from one of these stops to the next
+Scan thinned(const Scan& scan, std::size_t step) {
   Scan some = scan;
   some.shots.clear();
   for (std::size_t stop = 0; stop < scan.shots.size(); stop += step) {
@@ -245,8 +295,9 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   throw_if_stopped(stop);
   const LaserRig configured{.platform_from_sensor = scan.platform_from_sensor,
                             .lasers = scan.laser->lasers};
-  const LaserLines lines(folder, thinned(scan));
-  const RigSolver solver(lines, configured, threads, stop);
+  const std::size_t step = step_between(scan);
+  const LaserLines lines(folder, thinned(scan, step));
+  RigSolver solver(lines, configured, threads, stop);
   LaserCalibration calibration{.lasers = configured.lasers};
   CalibrationReport& report = calibration.report;
   report.platform_from_sensor = configured.platform_from_sensor;
@@ -259,7 +310,8 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
   }
   const RigSolution as_told = solver.as_told();
   report.before = disagreement(as_told);
-  RigSolution best = solve_best(solver);
+  std::vector<double> slipped(lines.scan().shots.size(), 0.0);
+  RigSolution best = solve_slips(solver, solve_best(solver), slipped);
   report.after = disagreement(best);
   if (fits_no_better(best, as_told)) {
     best.rig = configured;
@@ -281,6 +333,9 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
     report.findings.push_back(describe_disagreement(disagreement(best)));
   }
   report.accepted = report.reason.empty();
+  if (report.accepted && std::ranges::any_of(slipped, [](double angle) { return angle != 0; })) {
+    add_slips(report, slipped, step, scan.shots.size());
+  }
   calibration.lasers = best.rig.lasers;
   for (Laser& laser : calibration.lasers) {
     laser.source.reset();

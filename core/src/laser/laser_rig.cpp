@@ -96,16 +96,14 @@ std::uint64_t to_key(const Cell& cell) {
 }  // namespace
 
 LinePoints::LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser,
-                       double turn_ratio, double min_height) {
-  const std::vector<Shot>& shots = lines.scan().shots;
+                       std::span<const double> angles, double min_height) {
   const auto placed = [&](std::size_t stop) -> PlacedLine {
     return {.profile = lines.at(stop)[laser],
             .laser = rig.lasers[laser],
-            .object_from_sensor =
-                object_from_sensor(rig.platform_from_sensor, turn_ratio * shots[stop].angle)};
+            .object_from_sensor = object_from_sensor(rig.platform_from_sensor, angles[stop])};
   };
-  for (std::size_t stop = 0; stop < shots.size(); ++stop) {
-    const PlacedLine next = placed((stop + 1) % shots.size());
+  for (std::size_t stop = 0; stop < angles.size(); ++stop) {
+    const PlacedLine next = placed((stop + 1) % angles.size());
     const PlacedLine own = placed(stop);
     add_stop(make_strip(own, nullptr, &next), stop, min_height,
              own.object_from_sensor.translation().cast<float>());

@@ -64,10 +64,10 @@ struct LinePoint {
 class LinePoints {
  public:
   /// @param lines  already read at all stops
-  /// @param turn_ratio  angle by which the platform turned, by configured angle
+  /// @param angles  of the platform at each stop, radians
   /// @param min_height  metres above the rig's platform: lower points may be the platform's
-  LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser, double turn_ratio,
-             double min_height);
+  LinePoints(const LaserLines& lines, const LaserRig& rig, std::size_t laser,
+             std::span<const double> angles, double min_height);
 
   const std::vector<LinePoint>& all() const { return points_; }
 

@@ -40,6 +40,8 @@ constexpr std::array scales = {0.001,  0.001,  0.0005, 0.0003, 0.0002,
                                0.0002, 0.0002, 0.0002, 0.0002, 0.0002};
 constexpr double confirming_distance = 0.0004;  // metres, as lasers of a right rig may disagree
 
+constexpr int min_slip_pairs = 50;
+
 // Converged below this change of each unknown, radians and metres: a micrometre at the object.
 constexpr double at_rest = 0.000002;
 
@@ -56,6 +58,14 @@ double cauchy_cost(const std::vector<float>& residuals) {
   }
   return residuals.empty() ? 0 : sum / static_cast<double>(residuals.size());
 }
+
+/// Least squares of a slip's angle, by the pairs of a point before a stop and one from it on.
+struct SlipSums {
+  double matrix = 0;
+  double right = 0;
+  double squares = 0;
+  int pairs = 0;
+};
 
 Vector3d turned_to_stop(const Vector3d& object, double angle) {
   return Eigen::AngleAxisd(angle, Vector3d::UnitZ()) * object;
@@ -94,6 +104,7 @@ struct RigSolver::Sums {
 RigSolver::RigSolver(const LaserLines& lines, LaserRig configured, int threads,
                      const std::stop_token& stop)
     : lines_(lines), stop_(stop), told_(std::move(configured)) {
+  set_slipped({});
   const auto stops = static_cast<int>(lines.scan().shots.size());
   fork_join(threads, [&](int thread) {
     for (int at = thread; at < stops; at += threads) {
@@ -195,11 +206,11 @@ double RigSolver::Pair::distance() const {
 
 /// Visits surface points of each laser with the nearest one of every other, if it has one near.
 /// @return number of points looked at
-std::size_t RigSolver::visit_pairs(const LaserRig& rig, double turn_ratio,
+std::size_t RigSolver::visit_pairs(const LaserRig& rig, std::span<const double> angles,
                                    const std::function<void(const Pair&)>& visit) const {
   std::vector<LinePoints> surfaces;
   for (std::size_t laser = 0; laser < rig.lasers.size(); ++laser) {
-    surfaces.emplace_back(lines_, rig, laser, turn_ratio, object_height);
+    surfaces.emplace_back(lines_, rig, laser, angles, object_height);
   }
   std::size_t visited = 0;
   for (std::size_t from = 0; from < surfaces.size(); ++from) {
@@ -220,15 +231,14 @@ std::size_t RigSolver::visit_pairs(const LaserRig& rig, double turn_ratio,
 }
 
 void RigSolver::add_surfaces(const LaserRig& rig, double scale, Sums& sums) const {
-  const std::vector<Shot>& shots = lines_.scan().shots;
   VectorXd row(sums.right.size());
-  visit_pairs(rig, 1, [&](const Pair& pair) {
+  visit_pairs(rig, angles_, [&](const Pair& pair) {
     const Vector3d normal = pair.to.normal.cast<double>();
     const double residual = pair.distance();
     row.setZero();
     const auto add = [&](const LinePoint& point, std::size_t laser, double factor) {
       const SeenPoint seen(rig, pivots_, laser, lines_.at(point.stop)[laser].rays[point.ray]);
-      seen.add_row(turned_to_stop(normal, shots[point.stop].angle), factor, row);
+      seen.add_row(turned_to_stop(normal, angles_[point.stop]), factor, row);
     };
     add(pair.from, pair.from_laser, 1);
     add(pair.to, pair.to_laser, -1);
@@ -237,11 +247,58 @@ void RigSolver::add_surfaces(const LaserRig& rig, double scale, Sums& sums) cons
 }
 
 double RigSolver::confirmed_share(const LaserRig& rig, double turn_ratio) const {
+  std::vector<double> angles = angles_;
+  std::ranges::transform(angles, angles.begin(), [&](double angle) { return turn_ratio * angle; });
   double confirmed = 0;
-  const std::size_t points = visit_pairs(rig, turn_ratio, [&](const Pair& pair) {
+  const std::size_t points = visit_pairs(rig, angles, [&](const Pair& pair) {
     confirmed += std::abs(pair.distance()) < confirming_distance ? 1 : 0;
   });
   return confirmed / static_cast<double>(std::max<std::size_t>(points, 1));
+}
+
+void RigSolver::set_slipped(std::span<const double> slipped) {
+  angles_.clear();
+  for (const Shot& shot : lines_.scan().shots) {
+    angles_.push_back(shot.angle + (slipped.empty() ? 0 : slipped[angles_.size()]));
+  }
+}
+
+std::optional<Slip> RigSolver::find_slip(const LaserRig& rig,
+                                         std::optional<std::size_t> only) const {
+  std::vector<SlipSums> at(angles_.size() + 1);
+  visit_pairs(rig, angles_, [&](const Pair& pair) {
+    const Vector3d around = Vector3d::UnitZ().cross(pair.from.point.cast<double>());
+    const bool is_from_later = pair.from.stop > pair.to.stop;
+    const double by_angle = (is_from_later ? 1 : -1) * pair.to.normal.cast<double>().dot(around);
+    const double distance = pair.distance();
+    const double weight =
+        cauchy_weight(distance, scales.front()) * weight_of_pair(pair.from, pair.to);
+    const auto add = [&](SlipSums& sums, int sign) {
+      sums.matrix += sign * weight * by_angle * by_angle;
+      sums.right += sign * weight * by_angle * distance;
+      sums.squares += sign * weight * distance * distance;
+      sums.pairs += sign;
+    };
+    const auto [earlier, later] = std::minmax(pair.from.stop, pair.to.stop);
+    add(at[earlier + 1], 1);
+    add(at[later + 1], -1);
+  });
+  SlipSums sums;
+  SlipSums best;
+  Slip slip;
+  for (std::size_t stop = 1; stop < angles_.size(); ++stop) {
+    sums.matrix += at[stop].matrix;
+    sums.right += at[stop].right;
+    sums.squares += at[stop].squares;
+    sums.pairs += at[stop].pairs;
+    if (only.value_or(stop) == stop && sums.matrix > 0 &&
+        sums.right * sums.right * best.matrix >= best.right * best.right * sums.matrix) {
+      best = sums;
+      slip = {.stop = stop, .angle = sums.right / sums.matrix};
+    }
+  }
+  slip.explained = best.squares > 0 ? slip.angle * best.right / best.squares : 0;
+  return best.pairs >= min_slip_pairs ? std::optional(slip) : std::nullopt;
 }
 
 /// The normal equations of a rig, scaled by the residuals' inverse variance.

@@ -2,6 +2,8 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
+#include <span>
 #include <stop_token>
 #include <vector>
 
@@ -29,6 +31,13 @@ struct RigSolution {
   double cost = 0;  ///< mean of ln(1 + (r / 0.1 mm)^2) over both kinds, to compare solutions
 };
 
+/// The platform stood further on than configured, from a stop on.
+struct Slip {
+  std::size_t stop = 0;
+  double angle = 0;      ///< radians
+  double explained = 0;  ///< share of the squared distances between points before it and after it
+};
+
 /// Solves the pose of the camera and the planes of the lasers from the lines of a turn.
 ///
 /// Gauss-Newton with Cauchy weights and three kinds of residuals. A point of one laser's line,
@@ -46,6 +55,14 @@ class RigSolver {
 
   /// Evaluates the configured rig.
   RigSolution as_told() const;
+
+  /// Returns the slip that explains most of the distances between the surfaces of two lasers; none
+  /// if too few points were seen before and after it.
+  /// @param at  looks there only
+  std::optional<Slip> find_slip(const LaserRig& rig, std::optional<std::size_t> at = {}) const;
+
+  /// Sets how far the platform had slipped at each stop, radians.
+  void set_slipped(std::span<const double> slipped);
 
   /// Returns the share of the surface points that another laser confirms, had the platform turned
   /// by `turn_ratio` times the configured angles.
@@ -78,7 +95,7 @@ class RigSolver {
     double distance() const;
   };
 
-  std::size_t visit_pairs(const LaserRig& rig, double turn_ratio,
+  std::size_t visit_pairs(const LaserRig& rig, std::span<const double> angles,
                           const std::function<void(const Pair&)>& visit) const;
 
   Equations linearise(const LaserRig& rig, double scale, RigSolution& solution) const;
@@ -92,6 +109,7 @@ class RigSolver {
   const LaserLines& lines_;
   std::stop_token stop_;
   LaserRig told_;
+  std::vector<double> angles_ = {};  // of the platform at each stop, radians
   Pivots pivots_ = {};
   std::vector<PlatformPoint> platform_ = {};
 };

@@ -188,6 +188,26 @@ TEST(CalibrateLasers, NamesLasersThatAreExchanged) {
   EXPECT_EQ(found.report.reason, found.report.findings[0].detail);
 }
 
+TEST(CalibrateLasers, NamesAStopToWhichThePlatformSlipped) {
+  for (const std::size_t at : {1U, 17U}) {
+    Scan told = Turn::of_two_balls().truth();
+    for (std::size_t stop = at; stop < told.shots.size(); ++stop) {
+      told.shots[stop].angle -= radians_from_degrees(1.4);
+    }
+
+    const LaserCalibration found = Turn::of_two_balls().solve(told);
+
+    ASSERT_TRUE(found.report.accepted) << found.report.reason;
+    ASSERT_EQ(found.report.findings.size(), 1U);
+    EXPECT_EQ(found.report.findings[0].code, "slip");
+    EXPECT_EQ(found.report.findings[0].stop, static_cast<int>(at));
+    ASSERT_EQ(found.report.slipped.size(), told.shots.size());
+    EXPECT_EQ(found.report.slipped[at - 1], 0);
+    EXPECT_NEAR(degrees_from_radians(found.report.slipped[at]), 1.4, 0.25);
+    EXPECT_FALSE(found.report.confirms_told());
+  }
+}
+
 TEST(CalibrateLasers, IsTheSameForAnyThreads) {
   const Scan& truth = Turn::of_two_balls().truth();
   Scan told = truth;

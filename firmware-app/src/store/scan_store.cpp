@@ -397,12 +397,25 @@ void ScanStore::recover() {
   }
 }
 
-/// `writing_` is held.
+/// `writing_` is held. The scan leaves the list before its folder does: a request that misses a file
+/// then finds that there is no such scan.
 void ScanStore::move_to_bin(const Job& job) {
-  bin_.take(folder(job.id), job, now(), clock_.is_right());
-  const std::lock_guard lock(mutex_);
-  jobs_.erase(job.id);
-  ++revision_;
+  const auto list = [&](bool is_listed) {
+    const std::lock_guard lock(mutex_);
+    if (is_listed) {
+      jobs_.insert_or_assign(job.id, job);
+    } else {
+      jobs_.erase(job.id);
+    }
+    ++revision_;
+  };
+  list(false);
+  try {
+    bin_.take(folder(job.id), job, now(), clock_.is_right());
+  } catch (...) {
+    list(true);
+    throw;
+  }
 }
 
 /// `writing_` is held.

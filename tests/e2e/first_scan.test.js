@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
-import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
+import {chooseQuickScan, clickModel, modelShare, openBrowser, openPage, picture} from './browser.js';
 import {measure} from '../web/mesh_file.js';
 import {startScanner} from './scanner.js';
 
@@ -11,48 +11,6 @@ const depthPicture = (page) => page.locator('#depth').evaluate((canvas) => {
   const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer);
   return {colours: new Set(pixels).size, share: pixels.filter((pixel) => pixel >>> 24 > 0).length / pixels.length};
 });
-
-/**
- * The rows of the 3D view that show the model, from the top: each row's longest run of the model's warm colour, on a bluish
- * background.
- *
- * @returns {Promise<{share: number, rows: {y: number, first: number, end: number}[]}>}  share: of the view's pixels in that colour
- */
-async function modelSeen(page) {
-  const png = await page.locator('#view').screenshot();
-  return page.evaluate(async (base64) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (byte) => byte.charCodeAt(0))]));
-    const {width, height} = bitmap;
-    const context = new OffscreenCanvas(width, height).getContext('2d');
-    context.drawImage(bitmap, 0, 0);
-    const {data} = context.getImageData(0, 0, width, height);
-    const rows = [];
-    let warm = 0;
-    for (let y = 0; y < height; ++y) {
-      let longest = {y, first: 0, end: 0};
-      for (let x = 0, first = 0; x < width; ++x) {
-        const i = 4 * (y * width + x);
-        const isWarm = data[i] > 60 && data[i] > data[i + 2];
-        warm += isWarm ? 1 : 0;
-        first = isWarm ? first : x + 1;
-        longest = x + 1 - first > longest.end - longest.first ? {y, first, end: x + 1} : longest;
-      }
-      if (longest.end > longest.first) {
-        rows.push(longest);
-      }
-    }
-    return {share: warm / (width * height), rows};
-  }, png.toString('base64'));
-}
-
-const modelShare = async (page) => (await modelSeen(page)).share;
-
-/** Clicks on the model at a share of its visible rows from the top, as the view's height depends on the texts beside it. */
-async function clickModel(page, share) {
-  const {rows} = await modelSeen(page);
-  const {y, first, end} = rows[Math.floor(share * rows.length)];
-  await page.locator('#view').click({position: {x: (first + end) / 2, y}});
-}
 
 /** Records each number of snapshots that the page shows. */
 const noteProgress = (page) => page.evaluate(() => {

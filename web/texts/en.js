@@ -6,6 +6,7 @@
  * @type {Record<string, string>}
  */
 export const said = {
+  'Allow more triangles, or choose a larger leaf size.': 'Allow more triangles, or choose coarser detail.',
   'kinect: none is plugged in': 'no Kinect is plugged in',
   'Take pictures of a board, and use octurn calibrate --board.': 'Use a camera that has a serial number.',
   'End other programs, or lower memory_limit_mb in octurn.json.': 'End other programs, or lower Memory in the settings.',
@@ -441,6 +442,7 @@ export const texts = {
   'cure.whole-space': 'Build again with more space',
   'cure.all-parts': 'Build again with all parts',
   'cure.flatten': 'Correct the sensor’s unevenness',
+  'refusal.model-too-large.least_triangles': 'This model cannot have fewer than {least_triangles} triangles.',
   'cure.again': 'Scan again',
   'cure.test-turn': 'Test a turn',
   'cure.lower-space': 'Build again with a lower space',

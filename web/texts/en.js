@@ -301,7 +301,7 @@ export const texts = {
   'share.local': 'This address works on this computer only. Open the page at the scanner’s address in the network.',
   'compare.title': 'Compare with a reference',
   'compare.about': 'The file is laid on the model by itself, and stays in this browser. What was filled in is grey and not counted.',
-  'compare.file': 'STL in millimetres',
+  'compare.file': 'Choose an STL in millimetres',
   'compare.build': 'Or another model of this scan',
   'compare.no-build': 'none',
   'compare.tolerance': 'Tolerance',
@@ -468,6 +468,7 @@ export const texts = {
 
   // The other sides of an object
   'sides.title': 'The other side',
+  'failure.zip': 'No ZIP was made',
   'sides.drawing': 'The object stands on the platform, then lies on its back',
   'sides.about': 'Lay the object on its back or side, anywhere on the platform, and scan again. Octurn works out how it was turned and merges both scans.',
   'sides.first': 'Turn it over and scan the underside',

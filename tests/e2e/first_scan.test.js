@@ -69,7 +69,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   assert.ok(share > 0.02, `a model in 3D, not ${share} of the view`);
   await picture(page, 'finished');
 
-  await page.getByRole('button', {name: 'Measure between two points'}).click();
+  await page.getByRole('button', {name: 'Measure the model'}).click();
   for (const [place, text] of [[0.3, 'Click another one.'], [0.5, /^\d+\.\d\smm \(ΔX /]]) {
     await clickModel(page, place);
     await page.locator('#measured').filter({hasText: text}).waitFor();
@@ -83,7 +83,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   await picture(page, 'measured');
 
   await page.getByRole('button', {name: 'Cut the model open'}).click();
-  await page.locator('#cut-height').waitFor({state: 'hidden'});
+  await page.locator('#cut-place').waitFor({state: 'hidden'});
   await page.getByRole('button', {name: 'Lay it on another side'}).click();
   await page.getByText('Click the side it should rest on.').waitFor();
   await clickModel(page, 0.5);  // on the chest

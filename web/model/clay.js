@@ -170,6 +170,7 @@ void main() {
 }`,
   }));
   floor.renderOrder = -1;
+  grid.position.z = -radius / 2000;  // below the model's lowest side, through which its section is drawn
   grid.add(floor);
   return grid;
 }

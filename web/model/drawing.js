@@ -9,6 +9,7 @@ import {
 
 const colour = 0xf4c95d;
 const dot = 11;  // pixels
+const margin = 16;  // pixels
 
 /** @param {number[][]} points */
 function geometryOf(points) {
@@ -58,7 +59,7 @@ export class Labels {
     for (const {element, at} of this.#shown) {
       const {x, y, z} = at.clone().project(camera);
       element.hidden = z > 1;  // behind the camera
-      element.style.left = `${(0.5 + 0.5 * x) * clientWidth}px`;
+      element.style.left = `${Math.min((0.5 + 0.5 * x) * clientWidth, clientWidth - element.offsetWidth - margin)}px`;
       element.style.top = `${(0.5 - 0.5 * y) * clientHeight}px`;
     }
   }

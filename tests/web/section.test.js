@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {dot, extents, planeInModel, sectionOf} from '../../web/model/section.js';
+import {boxOf, dot, planeInModel, sectionOf} from '../../web/model/section.js';
 import {Matrix4, Vector3} from '../../web/three.js';
 
 const near = (actual, expected, share = 1e-6) =>
@@ -96,7 +96,8 @@ test('a section of a model that was laid is that of the view', () => {
   const told = sectionOf(cylinder, planeInModel(plane, {axes, origin}), axes[0], axes[2]);
   assert.ok(seen.area > 100);
   Object.keys(seen).forEach((name) => near(told[name], seen[name]));
-  const [one, other] = [extents(inView, [x, y, z]), extents(cylinder, axes)];
-  one.max.forEach((value, axis) => near(other.max[axis] + origin[axis], value, 1e-5));
+  const [one, other] = [boxOf(inView, {axes: [x, y, z], origin: [0, 0, 0]}), boxOf(cylinder, {axes, origin})];
+  one.max.forEach((value, axis) => near(other.max[axis], value, 1e-5));
+  one.min.forEach((value, axis) => near(other.min[axis], value, 1e-5));
   assert.equal(dot([1, 2, 3], [4, 5, 6]), 32);
 });

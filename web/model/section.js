@@ -27,6 +27,16 @@ export function extents(positions, axes) {
   return {min, max};
 }
 
+/**
+ * The box around a mesh in its pose.
+ * @param {ArrayLike<number>} positions @param {Pose} pose
+ */
+export function boxOf(positions, {axes, origin}) {
+  const {min, max} = extents(positions, axes);
+  const placed = (/** @type {number[]} */ corner) => corner.map((value, axis) => value + origin[axis]);
+  return {min: placed(min), max: placed(max)};
+}
+
 /** A number from -1 to 1 that no other place is likely to have. @param {number} u @param {number} v */
 const markOf = (u, v) => Math.sin(1e4 * Math.sin(12.9898 * u + 78.233 * v + 1));
 const maxUnmatched = 1e-4;  // rounding of the sum of a million marks is far less

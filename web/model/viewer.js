@@ -13,7 +13,7 @@ import {smoothNormals} from './normals.js';
 import {placeAt} from './pick.js';
 import {ballOf, placesMark} from './places_mark.js';
 import {restingSide} from './resting_pose.js';
-import {extents} from './section.js';
+import {boxOf, extents} from './section.js';
 import {Shadow} from './shadow.js';
 
 /** @typedef {import('./stl.js').Mesh} StlMesh */
@@ -198,10 +198,9 @@ export class Viewer {
     if (place_mm) {
       quaternion.setFromUnitVectors(restingSide(this.#samples, this.#model.worldToLocal(new Vector3(...place_mm))), down);
       const {x, y} = this.#model.geometry.boundingSphere.center.clone().applyQuaternion(quaternion);
-      const {min, max} = extents(this.#samples.flatMap((sample) => sample.toArray()), this.pose().axes);
-      position.set(-x, -y, -min[2]);
-      const placed = (/** @type {number[]} */ corner) => position.clone().add(new Vector3(...corner)).toArray();
-      this.#box = {min: placed(min), max: placed(max)};
+      const samples = this.#samples.flatMap((sample) => sample.toArray());
+      position.set(-x, -y, -extents(samples, this.pose().axes).min[2]);
+      this.#box = boxOf(samples, this.pose());
     } else {
       quaternion.identity();
       position.setScalar(0);

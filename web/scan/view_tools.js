@@ -5,7 +5,7 @@ import * as api from '../api/api.js';
 import {element, pressed, setText, show} from '../base/dom.js';
 import * as format from '../base/format.js';
 import {measureDrawing, measureText, sectionText, sizeDrawing, sizeText, withPoint} from '../model/measure.js';
-import {extents, planeInModel, sectionOf} from '../model/section.js';
+import {boxOf, planeInModel, sectionOf} from '../model/section.js';
 import {readStl} from '../model/stl.js';
 import {text} from '../base/texts.js';
 
@@ -91,13 +91,10 @@ function measured(kind) {
     return measureText(kind, points);
   }
   const positions = loadedCorners();
-  if (!shown || !positions) {
+  if (!shown || (painted.url !== null && !positions)) {
     return text('view.loading');
   }
-  const pose = shown.pose();
-  const {min, max} = extents(positions, pose.axes);
-  const placed = (/** @type {number[]} */ corner) => corner.map((value, axis) => value + pose.origin[axis]);
-  const box = {min: placed(min), max: placed(max)};
+  const box = positions ? boxOf(positions, shown.pose()) : shown.box;  // of a preview, which stands as scanned
   shown.showDrawing(sizeDrawing(box));
   return sizeText(box);
 }

@@ -119,3 +119,46 @@ export async function picture(page, name, {fullPage = true} = {}) {
   await mkdir(where, {recursive: true});
   await page.screenshot({path: join(where, `${name}.png`), fullPage});
 }
+
+/**
+ * The rows of the 3D view that show the model, from the top: each row's longest run of the model's warm colour, on a bluish
+ * background.
+ *
+ * @returns {Promise<{share: number, rows: {y: number, first: number, end: number}[]}>}  share: of the view's pixels in that colour
+ */
+async function modelSeen(page) {
+  const png = await page.locator('#view').screenshot();
+  return page.evaluate(async (base64) => {
+    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (byte) => byte.charCodeAt(0))]));
+    const {width, height} = bitmap;
+    const context = new OffscreenCanvas(width, height).getContext('2d');
+    context.drawImage(bitmap, 0, 0);
+    const {data} = context.getImageData(0, 0, width, height);
+    const rows = [];
+    let warm = 0;
+    for (let y = 0; y < height; ++y) {
+      let longest = {y, first: 0, end: 0};
+      for (let x = 0, first = 0; x < width; ++x) {
+        const i = 4 * (y * width + x);
+        const isWarm = data[i] > 60 && data[i] > data[i + 2];
+        warm += isWarm ? 1 : 0;
+        first = isWarm ? first : x + 1;
+        longest = x + 1 - first > longest.end - longest.first ? {y, first, end: x + 1} : longest;
+      }
+      if (longest.end > longest.first) {
+        rows.push(longest);
+      }
+    }
+    return {share: warm / (width * height), rows};
+  }, png.toString('base64'));
+}
+
+/** The share of the 3D view's pixels that show the model. */
+export const modelShare = async (page) => (await modelSeen(page)).share;
+
+/** Clicks on the model at a share of its visible rows from the top, as the view's height depends on the texts beside it. */
+export async function clickModel(page, share) {
+  const {rows} = await modelSeen(page);
+  const {y, first, end} = rows[Math.floor(share * rows.length)];
+  await page.locator('#view').click({position: {x: (first + end) / 2, y}});
+}

@@ -8,7 +8,7 @@ import {test} from 'node:test';
 import {promisify} from 'node:util';
 
 import {complaints, overflow} from './access.js';
-import {openBrowser, openPage, picture} from './browser.js';
+import {clickModel, openBrowser, openPage, picture} from './browser.js';
 import {ask, quick, scan, scanFolders, startScanner} from './scanner.js';
 
 const run = promisify(execFile);
@@ -30,6 +30,49 @@ async function measured(scanner, url, name) {
 
 const height = ({z}) => z[1] - z[0];
 
+/** @returns {Promise<number[]>} width, depth and area of the flat top of a downloaded model */
+async function topOf(scanner, name) {
+  const file = await readFile(join(scanner.data, name));
+  const facets = Array.from({length: file.readUInt32LE(80)}, (_, facet) => Array.from({length: 3}, (__, corner) =>
+    Array.from({length: 3}, (___, axis) => file.readFloatLE(84 + 50 * facet + 12 + 12 * corner + 4 * axis))));
+  const highest = Math.max(...facets.flat().map(([, , z]) => z));
+  const flat = facets.filter((corners) => corners.every(([, , z]) => z > highest - 0.1));
+  const area = flat.reduce((sum, [a, b, c]) => sum + ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])) / 2, 0);
+  const reach = (axis) => Math.max(...flat.flat().map((at) => at[axis])) - Math.min(...flat.flat().map((at) => at[axis]));
+  return [reach(0), reach(1), area];
+}
+
+/** Measures the model by clicks on it and by a key, and takes the tool off again. */
+async function measureIt(page, {x, y, z}) {
+  await page.getByRole('button', {name: 'Measure the model'}).click();
+  const said = page.locator('#measured');
+  await page.getByRole('button', {name: 'Size', exact: true}).click();
+  await said.filter({hasText: 'Width'}).waitFor();
+  const sides = [x, y, z].map(([min, max]) => (max - min).toFixed(1));
+  assert.equal(await said.innerText(), `Width × depth × height: ${sides.join(' × ')}\u00a0mm`);
+  assert.deepEqual(await page.locator('#labels span').allInnerTexts(), sides.map((side) => `${side}\u00a0mm`));
+  await picture(page, 'edits-size');
+  const kinds = [
+    ['Distance', [0.3, 0.4], /^[\d.]+\smm \(ΔX/], ['Diameter', [0.3, 0.35, 0.4], /^⌀ [\d.]+\smm$/], ['Angle', [0.3, 0.4], /^[\d.]+°$/]];
+  for (const [kind, shares, pattern] of kinds) {
+    await page.getByRole('button', {name: kind, exact: true}).click();
+    for (const share of shares) {
+      await clickModel(page, share);
+    }
+    if (kind === 'Angle') {
+      await page.locator('#view').focus();
+      await page.keyboard.press('Enter');  // on the chest, which is in the middle
+    }
+    await said.filter({hasText: pattern}).waitFor();
+    assert.equal(await page.locator('#labels span').count(), 1);
+    await picture(page, `edits-${kind.toLowerCase()}`);
+  }
+  assert.deepEqual(await complaints(page), []);
+  await page.getByRole('button', {name: 'Measure the model'}).click();
+  await page.locator('#measure-kinds').waitFor({state: 'hidden'});
+  assert.equal(await page.locator('#labels span').count(), 0);
+}
+
 /** Waits until a build is the scan's model and in view. */
 async function awaitBuild(page, scanner, id, build) {
   await page.locator(`#build-rows > li:nth-child(${build + 1}) .build-chosen`).waitFor();
@@ -39,14 +82,16 @@ async function awaitBuild(page, scanner, id, build) {
   return now;
 }
 
-/** Clicks the model in the middle of the picture, which does not turn. */
-async function clickModel(page) {
+/**
+ * Clicks on the front of the figure's body, from where the model is first seen. In the middle of the picture are its legs or the
+ * gap between them, below its centre: from there it would stand as it stands.
+ */
+async function clickBody(page) {
   if (await page.locator('#turn[aria-pressed=true]').count() > 0) {
     await page.locator('#turn').click();
   }
   await page.locator('#reset-view').click();
-  const {x, y, width, height: tall} = await page.locator('#view').boundingBox();
-  await page.mouse.click(x + width / 2, y + tall / 2);
+  await clickModel(page, 0.35);
 }
 
 test('a model is cut, laid, erased, cropped and scaled on the page, and can be taken back', async (t) => {
@@ -60,20 +105,35 @@ test('a model is cut, laid, erased, cropped and scaled on the page, and can be t
   await page.locator('#tools').waitFor();
   const make = page.getByRole('button', {name: 'Make this the model'});
   assert.ok(await make.isHidden(), 'nothing was done to it');
+  await measureIt(page, whole);
 
   await page.getByRole('button', {name: 'Cut the model open'}).click();
-  await page.locator('#cut-share').fill('0.4');
-  await picture(page, 'edits-cut');
+  const sections = {};
+  for (const name of ['X', 'Y', 'Z']) {
+    await page.getByRole('button', {name, exact: true}).click();
+    await page.locator('#cut-share').fill('0.4');
+    await page.locator('#measured').filter({hasText: 'Section'}).waitFor();
+    const at = 0.6 * whole[name.toLowerCase()][0] + 0.4 * whole[name.toLowerCase()][1];
+    assert.ok(Math.abs(parseFloat(await page.locator('#cut-at').innerText()) - at) < 0.11, name);
+    sections[name] = (await page.locator('#measured').innerText()).match(/[\d.]+/g).map(Number);
+    await picture(page, `edits-cut-${name}`);
+  }
+  assert.equal(new Set(Object.values(sections).map(([, , area]) => area)).size, 3, JSON.stringify(sections));
   assert.deepEqual(await complaints(page), []);
   await make.click();
   const cut = await awaitBuild(page, scanner, made.id, 1);
   const half = await measured(scanner, cut.model.url, 'cut.stl');
   assert.ok(Math.abs(half.z[1] - 0.4 * height(whole)) < 0.05 && half.z[0] === 0, `cut at ${half.z[1]} of ${height(whole)} mm`);
+  const top = await topOf(scanner, 'cut.stl');
+  t.diagnostic(`section: ${sections.Z.join(', ')}; of the model that was built: ${top.join(', ')}`);
+  const rim = 1;  // millimetres: the upper edge of the built model is a voxel wide
+  const around = 2 * (top[0] + top[1]);
+  assert.ok(sections.Z.every((value, i) => Math.abs(value - top[i]) < (i < 2 ? 2 * rim : rim * around)), `${sections.Z} and not ${top}`);
   assert.equal(cut.model.quality, null);
   assert.match(await page.locator('#build-rows > li:nth-child(2)').innerText(), /edited/);
 
   await page.getByRole('button', {name: 'Lay it on another side'}).click();
-  await clickModel(page);
+  await clickBody(page);
   await make.waitFor();
   await picture(page, 'edits-laid');
   await make.click();
@@ -85,7 +145,7 @@ test('a model is cut, laid, erased, cropped and scaled on the page, and can be t
 
   await page.getByRole('button', {name: 'Erase a part'}).click();
   await page.locator('#erase-radius').fill('8');
-  await clickModel(page);
+  await clickBody(page);
   await picture(page, 'edits-erased');
   await make.click();
   const erased = await awaitBuild(page, scanner, made.id, 3);
@@ -109,6 +169,11 @@ test('a model is cut, laid, erased, cropped and scaled on the page, and can be t
   assert.ok(small.model.triangles <= 3000, `${small.model.triangles} triangles`);
   const last = await measured(scanner, small.model.url, 'small.stl');
   assert.ok(last.volume < 0.125 * holed.volume && last.volume > 0.02 * holed.volume);
+
+  await page.getByLabel('Most triangles').fill('100');
+  await page.getByRole('button', {name: 'Build', exact: true}).click();
+  await page.getByText(/This model cannot have fewer than [\d,]+ triangles\. Allow more/).waitFor();
+  await picture(page, 'edits-too-few');
 
   await page.locator('#build-rows > li:nth-child(1)').getByRole('button', {name: 'Use this model'}).click();
   await page.locator('#build-rows > li:nth-child(1) .build-chosen').waitFor();

@@ -2,7 +2,7 @@ import assert from 'node:assert/strict';
 import {readFile} from 'node:fs/promises';
 import {test} from 'node:test';
 
-import {chooseQuickScan, openBrowser, openPage, picture} from './browser.js';
+import {chooseQuickScan, clickModel, modelShare, openBrowser, openPage, picture} from './browser.js';
 import {measure} from '../web/mesh_file.js';
 import {startScanner} from './scanner.js';
 
@@ -11,48 +11,6 @@ const depthPicture = (page) => page.locator('#depth').evaluate((canvas) => {
   const pixels = new Uint32Array(canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height).data.buffer);
   return {colours: new Set(pixels).size, share: pixels.filter((pixel) => pixel >>> 24 > 0).length / pixels.length};
 });
-
-/**
- * The rows of the 3D view that show the model, from the top: each row's longest run of the model's warm colour, on a bluish
- * background.
- *
- * @returns {Promise<{share: number, rows: {y: number, first: number, end: number}[]}>}  share: of the view's pixels in that colour
- */
-async function modelSeen(page) {
-  const png = await page.locator('#view').screenshot();
-  return page.evaluate(async (base64) => {
-    const bitmap = await createImageBitmap(new Blob([Uint8Array.from(atob(base64), (byte) => byte.charCodeAt(0))]));
-    const {width, height} = bitmap;
-    const context = new OffscreenCanvas(width, height).getContext('2d');
-    context.drawImage(bitmap, 0, 0);
-    const {data} = context.getImageData(0, 0, width, height);
-    const rows = [];
-    let warm = 0;
-    for (let y = 0; y < height; ++y) {
-      let longest = {y, first: 0, end: 0};
-      for (let x = 0, first = 0; x < width; ++x) {
-        const i = 4 * (y * width + x);
-        const isWarm = data[i] > 60 && data[i] > data[i + 2];
-        warm += isWarm ? 1 : 0;
-        first = isWarm ? first : x + 1;
-        longest = x + 1 - first > longest.end - longest.first ? {y, first, end: x + 1} : longest;
-      }
-      if (longest.end > longest.first) {
-        rows.push(longest);
-      }
-    }
-    return {share: warm / (width * height), rows};
-  }, png.toString('base64'));
-}
-
-const modelShare = async (page) => (await modelSeen(page)).share;
-
-/** Clicks on the model at a share of its visible rows from the top, as the view's height depends on the texts beside it. */
-async function clickModel(page, share) {
-  const {rows} = await modelSeen(page);
-  const {y, first, end} = rows[Math.floor(share * rows.length)];
-  await page.locator('#view').click({position: {x: (first + end) / 2, y}});
-}
 
 /** Records each number of snapshots that the page shows. */
 const noteProgress = (page) => page.evaluate(() => {
@@ -111,7 +69,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   assert.ok(share > 0.02, `a model in 3D, not ${share} of the view`);
   await picture(page, 'finished');
 
-  await page.getByRole('button', {name: 'Measure between two points'}).click();
+  await page.getByRole('button', {name: 'Measure the model'}).click();
   for (const [place, text] of [[0.3, 'Click another one.'], [0.5, /^\d+\.\d\smm \(ΔX /]]) {
     await clickModel(page, place);
     await page.locator('#measured').filter({hasText: text}).waitFor();
@@ -125,7 +83,7 @@ test('a scan, from one press of Start to a whole, closed Scan.stl', async (t) =>
   await picture(page, 'measured');
 
   await page.getByRole('button', {name: 'Cut the model open'}).click();
-  await page.locator('#cut-height').waitFor({state: 'hidden'});
+  await page.locator('#cut-place').waitFor({state: 'hidden'});
   await page.getByRole('button', {name: 'Lay it on another side'}).click();
   await page.getByText('Click the side it should rest on.').waitFor();
   await clickModel(page, 0.5);  // on the chest

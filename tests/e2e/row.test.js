@@ -150,3 +150,19 @@ test('another program finds the number, the author and the licence in 3MF, GLB a
       ['Jörg "Doe", CC BY 4.0', {inventory_number: 'B & C 17', author: 'Jörg "Doe"', licence: 'CC BY 4.0'}]);
   assert.deepEqual(comments, ['millimetres, Z up', 'name Möwe <1>', 'inventory number B & C 17', 'author Jörg "Doe"', 'licence CC BY 4.0']);
 });
+
+test('a refused ZIP says on the page why', async (t) => {
+  const scanner = await startScanner(t, fast);
+  for (let count = 0; count < 2; ++count) {
+    const {id} = await ask(scanner, 'scans', 'POST', {snapshots: 200, frames: 20});
+    await ask(scanner, `scans/${id}/cancel`, 'POST');
+    while ((await ask(scanner, `scans/${id}`)).state === 'running');
+  }
+  const {page} = await openPage(await openBrowser(t, {hasWebGl: false}), `${scanner.url}#library`, {screen: 'phone'});
+  await page.getByRole('button', {name: 'Select', exact: true}).click();
+  await page.getByRole('button', {name: 'Select all'}).click();
+  await page.getByRole('link', {name: 'ZIP of 2'}).click();
+  await page.getByText('No ZIP was made').waitFor();
+  await page.getByText('None of these scans has a model.').waitFor();
+  await picture(page, 'zip-refused-phone');
+});

@@ -187,6 +187,8 @@ TEST(Serve, LabelsAScanAtItsStartAndListsItInATable) {
   EXPECT_EQ(daemon.get("/api/v1/scans.csv").body, table.body);
   const Reply models = daemon.get("/api/v1/scans.zip?format=ply&ids=" + id);
   EXPECT_EQ(models.header("Content-Type"), "application/zip");
+  const Reply head = request(daemon.port(), "HEAD", "/api/v1/scans.zip?format=ply&ids=" + id);
+  EXPECT_EQ(head.header("Content-Type"), "application/zip") << "it is asked for without packing";
   EXPECT_NE(models.body.find("=Hase; _3_.ply"), std::string::npos);
   EXPECT_NE(models.body.find(daemon.get(scan + "/Scan.ply").body), std::string::npos);
   for (const char* const query : {"ids=20261121-081500-3f2a", "ids=..", "ids="}) {

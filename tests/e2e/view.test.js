@@ -164,8 +164,10 @@ async function views(page) {
     assert.equal(await hiddenPart(page, 'legend'), '', name);
     await picture(page, `views-${name}`, {fullPage: false});
     await page.locator('#cut').click();
-    assert.deepEqual(await Promise.all(['legend', 'cut-height'].map((id) => hiddenPart(page, id))), ['', ''], name);
-    assert.ok(await areApart(page, 'legend', 'cut-height'), name);
+    assert.deepEqual(await Promise.all(['legend', 'cut-place'].map((id) => hiddenPart(page, id))), ['', ''], name);
+    for (const id of ['cut-axes', 'cut-place', 'make-model']) {
+      assert.ok(await areApart(page, 'legend', id), `${id}: ${name}`);
+    }
     await page.locator('#cut').click();
   }
   for (const [name, size] of Object.entries({...shortScreens, between: [900, 800], desktop})) {

@@ -284,6 +284,15 @@ export async function model(url, signal) {
   return /** @type {ReadableStream<Uint8Array>} */ (body);
 }
 
+/**
+ * Asks whether a file can be downloaded.
+ * @param {string} url
+ * @throws {Problem} the refusal; only the answer to a GET has its reason
+ */
+export const expectFile = (url) => request(url, {method: 'HEAD'}, patienceWithFile).catch(async () => {
+  (await request(url, {}, patienceWithFile)).body?.cancel();
+});
+
 /** @returns {Promise<Update>} available on an appliance only */
 export const update = () => json('update');
 

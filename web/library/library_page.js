@@ -1,11 +1,12 @@
 // The library: finds, chooses, names, deletes, restores and imports scans.
 
+import * as api from '../api/api.js';
 import {prepareBin} from '../scan/bin.js';
 import {element} from '../base/dom.js';
 import {note, noted} from '../base/storage.js';
 import * as library from './library.js';
 import {renderLibrary} from './library_view.js';
-import {change, state} from '../page.js';
+import {act, change, state} from '../page.js';
 import {screenOf} from '../screen.js';
 import {emptyBin, importScan, remove, removeChosen, rename, restore, tagChosen} from '../scan/scan_actions.js';
 import * as states from '../state.js';
@@ -19,6 +20,14 @@ function search(query) {
   note(memory, query, 'sessionStorage');
   change(states.withLibrary(state, {query, limit: library.step}));
 }
+
+/** Downloads the models of the chosen scans, or shows why the scanner refuses that. */
+const downloadZip = () => act('failure.zip', async () => {
+  const address = element('chosen-zip').getAttribute('href');
+  await api.expectFile(address);
+  Object.assign(document.createElement('a'), {href: address, download: ''}).click();
+  return (now) => now;
+});
 
 /** The handlers for the chosen scans. */
 function listenForChosen() {
@@ -34,9 +43,12 @@ function listenForChosen() {
       field.value = '';
     }
   });
-  for (const id of ['chosen-zip', 'chosen-csv']) {
-    element(id).addEventListener('click', (/** @type {Event} */ event) => state.library.chosen?.length || event.preventDefault());
-  }
+  element('chosen-csv').addEventListener('click', (/** @type {Event} */ event) =>
+    state.library.chosen?.length || event.preventDefault());
+  element('chosen-zip').addEventListener('click', (/** @type {Event} */ event) => {
+    event.preventDefault();
+    state.library.chosen?.length && downloadZip();
+  });
 }
 
 /** Attaches the handlers of library.html. */

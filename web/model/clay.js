@@ -9,7 +9,23 @@ import {toLamp} from './light.js';
 const clay = 0xd9d2c6;
 const edgeColour = new Color(0x0e5a66);
 const filledColour = new Color(0xd9913f);
+const sectionColours = [new Color(0xc8643c), new Color(0xf2c9a8)];
 export const ringStep = 50;   // millimetres between the platform's rings
+export const uncut = [0, 0, 1, 1e9];  // a plane above every model
+
+/**
+ * GLSL: discards what lies beyond the plane `cut`. A ray that meets the inner side of a closed surface has entered the
+ * solid through the plane. There the section is seen, to which `place` is moved.
+ */
+export const cutShader = `uniform vec4 cut;
+bool isSection(inout vec3 place) {
+  float beyond = dot(place, cut.xyz) - cut.w;
+  if (beyond > 0.0) discard;
+  float eye = dot(cameraPosition, cut.xyz) - cut.w;
+  if (gl_FrontFacing || eye <= 0.0) return false;
+  place = mix(cameraPosition, place, eye / (eye - beyond));
+  return true;
+}`;
 
 /**
  * Clay that can show its triangles, shaded flat where the geometry has no normals. It is matt, which a phone draws faster
@@ -19,17 +35,19 @@ export const ringStep = 50;   // millimetres between the platform's rings
  * @param {{value: number}} shown.edges  opacity of the edges, 0 to 1
  * @param {{value: number}} shown.filled  opacity of the colour of filled-in surface, 0 to 1
  * @param {{value: number}} shown.painted  1: the corners' colours are shown; 0: clay
- * @param {{value: number}} shown.top  millimetres; higher parts are cut off
+ * @param {{value: number[]}} shown.cut  plane beyond which the model is cut off
+ * @param {{value: number}} shown.hatch  millimetres between the lines of the section
  * @param {{value: number}} shown.shaded  1: the lamp's shadow on the model is shown, which holds for its first pose alone
  * @param {boolean} shown.isSmooth  whether the geometry has normals and light
  */
-export function clayMaterial({edges, filled, painted, top, shaded, isSmooth}) {
+export function clayMaterial({edges, filled, painted, cut, hatch, shaded, isSmooth}) {
   const material = new MeshLambertMaterial({color: clay, flatShading: !isSmooth, side: DoubleSide});
   material.defines = isSmooth ? {LIT: 1} : {};
   material.onBeforeCompile = (shader) => {
     Object.assign(shader.uniforms, {
-      edgeStrength: edges, edgeColour: {value: edgeColour}, painted, top, shaded,
+      edgeStrength: edges, edgeColour: {value: edgeColour}, painted, cut, hatch, shaded,
       filledStrength: filled, filledColour: {value: filledColour},
+      sectionColour: {value: sectionColours[0]}, hatchColour: {value: sectionColours[1]},
     });
     shader.vertexShader = `attribute float filled;
 attribute vec3 paint;
@@ -38,13 +56,13 @@ varying vec2 vLight;
 varying vec3 vPaint;
 varying float vFilled;
 varying vec3 vCorner;
-varying float vHeight;
+varying vec3 vPlace;
 ${shader.vertexShader}`
         .replace('void main() {', `void main() {
       vFilled = filled;
       vPaint = paint;
       vLight = light;
-      vHeight = (modelMatrix * vec4(position, 1.0)).z;
+      vPlace = (modelMatrix * vec4(position, 1.0)).xyz;
       int corner = gl_VertexID % 3;
       vCorner = vec3(corner == 0, corner == 1, corner == 2);`);
     shader.fragmentShader = `varying vec3 vCorner;
@@ -55,13 +73,17 @@ uniform float edgeStrength;
 uniform vec3 edgeColour;
 uniform float filledStrength;
 uniform vec3 filledColour;
-varying float vHeight;
-uniform float top;
+varying vec3 vPlace;
 varying vec2 vLight;
 uniform float shaded;
+uniform float hatch;
+uniform vec3 sectionColour;
+uniform vec3 hatchColour;
+${cutShader}
 ${shader.fragmentShader}`
         .replace('#include <color_fragment>', `#include <color_fragment>
-      if (vHeight > top) discard;
+      vec3 place = vPlace;
+      bool isCut = isSection(place);
       diffuseColor.rgb = mix(diffuseColor.rgb, pow(vPaint, vec3(2.2)), painted);
       diffuseColor.rgb = mix(diffuseColor.rgb, filledColour, vFilled * filledStrength);`)
         .replace('#include <aomap_fragment>', `
@@ -76,6 +98,9 @@ ${shader.fragmentShader}`
       float edge = 1.0 - min(min(inside.x, inside.y), inside.z);
       float widest = max(max(perPixel.x, perPixel.y), perPixel.z);
       outgoingLight = mix(outgoingLight, edgeColour, edge * edgeStrength * (1.0 - smoothstep(0.5, 1.0, widest)));
+      float line = dot(place, vec3(1.0)) / hatch;
+      float soft = clamp((abs(fract(line) - 0.5) - 0.36) / fwidth(line) + 0.5, 0.0, 1.0);
+      if (isCut) outgoingLight = mix(sectionColour, hatchColour, soft);
       #include <opaque_fragment>`);
   };
   return material;
@@ -145,6 +170,7 @@ void main() {
 }`,
   }));
   floor.renderOrder = -1;
+  grid.position.z = -radius / 2000;  // below the model's lowest side, through which its section is drawn
   grid.add(floor);
   return grid;
 }

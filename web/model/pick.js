@@ -2,11 +2,12 @@
 // position as its colour, in the model's current pose.
 
 import {DoubleSide, FloatType, ShaderMaterial, WebGLRenderTarget} from '../three.js';
+import {cutShader} from './clay.js';
 
 const pixel = new WebGLRenderTarget(1, 1, {type: FloatType});
 const asPlaces = new ShaderMaterial({
   side: DoubleSide,
-  uniforms: {top: {value: 0}},
+  uniforms: {cut: {value: [0, 0, 0, 0]}},
   vertexShader: `varying vec3 vPlace;
 void main() {
   vec4 place = modelMatrix * vec4(position, 1.0);
@@ -14,23 +15,24 @@ void main() {
   gl_Position = projectionMatrix * viewMatrix * place;
 }`,
   fragmentShader: `varying vec3 vPlace;
-uniform float top;
+${cutShader}
 void main() {
-  if (vPlace.z > top) discard;
-  gl_FragColor = vec4(vPlace, 1.0);
+  vec3 place = vPlace;
+  isSection(place);
+  gl_FragColor = vec4(place, 1.0);
 }`,
 });
 
 /**
  * @param {import('three').WebGLRenderer} renderer @param {import('three').PerspectiveCamera} camera @param {any} model
- * @param {number} top  millimetres; higher parts are cut off
+ * @param {number[]} cut  plane beyond which the model is cut off
  * @param {number} x @param {number} y  of the canvas, CSS pixels
  * @returns {number[] | null} millimetres; null if the pixel does not show the model
  */
-export function placeAt(renderer, camera, model, top, x, y) {
+export function placeAt(renderer, camera, model, cut, x, y) {
   const {clientWidth, clientHeight} = renderer.domElement;
   const clay = model.material;
-  asPlaces.uniforms.top.value = top;
+  asPlaces.uniforms.cut.value = cut;
   camera.setViewOffset(clientWidth, clientHeight, Math.floor(x), Math.floor(y), 1, 1);
   model.material = asPlaces;
   renderer.setRenderTarget(pixel);

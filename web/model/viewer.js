@@ -5,40 +5,45 @@ import {
   Vector3, WebGLRenderer,
 } from '../three.js';
 import {fitToCanvas, onClick} from '../base/canvas.js';
-import {clayMaterial, lampLight, platform, ringStep, roomLight} from './clay.js';
+import {clayMaterial, lampLight, platform, ringStep, roomLight, uncut} from './clay.js';
+import {drawingMark, Labels} from './drawing.js';
 import {erasedMark} from './erased_mark.js';
 import {lightOf} from './light.js';
-import {measureMark} from './measure_mark.js';
 import {smoothNormals} from './normals.js';
 import {placeAt} from './pick.js';
 import {ballOf, placesMark} from './places_mark.js';
 import {restingSide} from './resting_pose.js';
+import {boxOf, extents} from './section.js';
 import {Shadow} from './shadow.js';
 
 /** @typedef {import('./stl.js').Mesh} StlMesh */
 
 const maxSmooth = 200_000;  // triangles; those of a larger model are small enough as they are
-const uncut = 1e9;  // millimetres, above every model
 const keyTurn = Math.PI / 24;  // radians
+const hatchLines = 24;  // of a section, on half the model's diagonal
 const down = new Vector3(0, 0, -1);
+const world = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const samplesKept = 5000;  // sampled vertices, from which the pose and the height range of a model on another side are computed
 const firstSight = new Vector3(0.42, -0.83, 0.37);  // initial direction from the model to the camera
 
 export class Viewer {
   #canvas;
   #onTurning;
+  #onPlace;
   #renderer;
   #camera = new PerspectiveCamera(32);
   #scene = new Scene();
   #edges = {value: 0};
   #filled = {value: 0};
   #painted = {value: 0};
-  #top = {value: uncut};
+  #cut = {value: uncut};
+  #hatch = {value: 1};  // millimetres between the lines of a section
   #shaded = {value: 1};
   #shadow = new Shadow();
   #reach = 0;  // of the shadow's texture, millimetres
-  #heights = [0, 0];  // height range of the model in its current pose, millimetres
-  #uprightHeights = [0, 0];
+  /** @type {import('./measure.js').Box} around the model in its current pose, millimetres */
+  #box = {min: [0, 0, 0], max: [0, 0, 0]};
+  #uprightBox = this.#box;
   /** @type {Vector3[]} */
   #samples = [];
   #controls;
@@ -51,7 +56,8 @@ export class Viewer {
   /** @type {any} */
   #places = null;
   /** @type {any} */
-  #measure = null;
+  #drawing = null;
+  #labels;
   /** @type {any} */
   #erased = null;
   #isAimed = false;  // whether the user has moved the camera
@@ -60,13 +66,16 @@ export class Viewer {
 
   /**
    * @param {HTMLCanvasElement} canvas
-   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onPlace: (place_mm: number[]) => void}} events  onPlace: called for a
-   *     click on the model
+   * @param {HTMLElement} labels  over the canvas, for the labels of a drawing
+   * @param {{onTurning: (isTurning: boolean) => void, onLost: () => void, onPlace: (place_mm: number[]) => void}} events
+   *     onPlace: called for a click on the model
    * @throws {Error} where there is no WebGL
    */
-  constructor(canvas, {onTurning, onLost, onPlace}) {
+  constructor(canvas, labels, {onTurning, onLost, onPlace}) {
     this.#canvas = canvas;
+    this.#labels = new Labels(labels);
     this.#onTurning = onTurning;
+    this.#onPlace = onPlace;
     this.#renderer = new WebGLRenderer({canvas, antialias: true, alpha: true});
     this.#camera.up.set(0, 0, 1);
     this.#renderer.toneMapping = ACESFilmicToneMapping;
@@ -85,11 +94,14 @@ export class Viewer {
     new ResizeObserver(() => this.#resize()).observe(canvas);
     canvas.addEventListener('webglcontextlost', onLost);
     canvas.addEventListener('keydown', (event) => this.#key(event));
-    onClick(canvas, (x, y) => {
-      this.#simplify(false);
-      const place = this.#model && placeAt(this.#renderer, this.#camera, this.#model, this.#top.value, x, y);
-      place && onPlace(place);
-    });
+    onClick(canvas, (x, y) => this.#pick(x, y));
+  }
+
+  /** @param {number} x @param {number} y  of the canvas, CSS pixels */
+  #pick(x, y) {
+    this.#simplify(false);
+    const place = this.#model && placeAt(this.#renderer, this.#camera, this.#model, this.#cut.value, x, y);
+    place && this.#onPlace(place);
   }
 
   /**
@@ -126,9 +138,11 @@ export class Viewer {
       geometry.setAttribute('light', new BufferAttribute(light, 2, true));
     }
     this.#model = new Mesh(geometry, clayMaterial({
-      edges: this.#edges, filled: this.#filled, painted: this.#painted, top: this.#top, shaded: this.#shaded, isSmooth,
+      edges: this.#edges, filled: this.#filled, painted: this.#painted, cut: this.#cut, hatch: this.#hatch,
+      shaded: this.#shaded, isSmooth,
     }));
-    this.#uprightHeights = this.#heights = [min[2], max[2]];
+    this.#uprightBox = this.#box = {min, max};
+    this.#hatch.value = radius / hatchLines;
     const corners = positions.length / 3;
     this.#samples = Array.from({length: Math.min(corners, samplesKept)}, (_, i) =>
       new Vector3().fromArray(positions, 3 * Math.floor(i * corners / Math.min(corners, samplesKept))));
@@ -164,8 +178,8 @@ export class Viewer {
     this.#isCoarse = false;
     this.#shaded.value = 1;
     this.#places = null;
-    this.#measure = null;
     this.#erased = null;
+    this.showDrawing(null);
     this.#painted.value = 0;
     this.turn(false);
   }
@@ -184,13 +198,13 @@ export class Viewer {
     if (place_mm) {
       quaternion.setFromUnitVectors(restingSide(this.#samples, this.#model.worldToLocal(new Vector3(...place_mm))), down);
       const {x, y} = this.#model.geometry.boundingSphere.center.clone().applyQuaternion(quaternion);
-      const heights = this.#samples.map((sample) => sample.clone().applyQuaternion(quaternion).z);
-      this.#heights = [0, Math.max(...heights) - Math.min(...heights)];
-      position.set(-x, -y, -Math.min(...heights));
+      const samples = this.#samples.flatMap((sample) => sample.toArray());
+      position.set(-x, -y, -extents(samples, this.pose().axes).min[2]);
+      this.#box = boxOf(samples, this.pose());
     } else {
       quaternion.identity();
       position.setScalar(0);
-      this.#heights = this.#uprightHeights;
+      this.#box = this.#uprightBox;
     }
     this.#model.updateMatrixWorld();
     this.#coarse?.quaternion.copy(quaternion);
@@ -222,9 +236,10 @@ export class Viewer {
     this.#draw();
   }
 
-  /** Draws a line between two points, or a dot. @param {number[][]} points_mm  empty: removes it */
-  showMeasure(points_mm) {
-    this.#measure = this.#replaced(this.#measure, points_mm.length > 0 ? measureMark(points_mm) : null, this.#subject);
+  /** Draws on top of the model. @param {import('./measure.js').Drawing | null} drawing  null: nothing */
+  showDrawing(drawing) {
+    this.#labels.show(drawing?.labels ?? []);
+    this.#drawing = this.#replaced(this.#drawing, drawing && drawingMark(drawing), this.#subject);
   }
 
   /** Marks balls that will be erased. @param {number[][]} balls_mm  centre and radius, in the model's own frame */
@@ -245,10 +260,18 @@ export class Viewer {
     return mark;
   }
 
-  /** The direction up in the frame of the model, and the height of its origin in its pose. */
+  /** @returns {import('./section.js').Pose} of the model */
   pose() {
-    const up = new Vector3(0, 0, 1).applyQuaternion(this.#model.quaternion.clone().invert());
-    return {up: up.toArray(), height: this.#model.position.z};
+    const back = this.#model.quaternion.clone().invert();
+    return {
+      axes: world.map((axis) => new Vector3(...axis).applyQuaternion(back).toArray()),
+      origin: this.#model.position.toArray(),
+    };
+  }
+
+  /** Around the model in its pose; on another side, around a sample of its corners. */
+  get box() {
+    return this.#box;
   }
 
   /** A place in the frame of the model. @param {number[]} place_mm  in view */
@@ -256,16 +279,10 @@ export class Viewer {
     return this.#model.worldToLocal(new Vector3(...place_mm)).toArray();
   }
 
-  /**
-   * Cuts off the model above a share of its height.
-   * @param {number} share  1: no cut
-   * @returns {number} the height of the cut, millimetres
-   */
-  cut(share) {
-    const height = this.#heights[0] + share * (this.#heights[1] - this.#heights[0]);
-    this.#top.value = share < 1 ? height : uncut;
+  /** Cuts off what lies beyond a plane of the view. @param {import('./section.js').Plane | null} plane  null: no cut */
+  cut(plane) {
+    this.#cut.value = plane ? [...plane.normal, plane.distance] : uncut;
     this.#draw();
-    return height;
   }
 
   /** Draws the shadow of the model in its current pose. @param {boolean} [isBrief]  whether it is soon drawn again */
@@ -357,6 +374,7 @@ export class Viewer {
       if (this.#canvas.clientWidth > 0 && this.#model) {
         this.#controls.update(seconds);  // requests the next frame if it moves the camera
         this.#renderer.render(this.#scene, this.#camera);
+        this.#labels.place(this.#camera, this.#canvas);
       }
     });
   }
@@ -372,6 +390,9 @@ export class Viewer {
       '+': () => this.#controls.dollyIn(0.9),
       '-': () => this.#controls.dollyOut(0.9),
     };
+    if (event.key === 'Enter') {
+      this.#pick(this.#canvas.clientWidth / 2, this.#canvas.clientHeight / 2);
+    }
     const move = moves[event.key];
     if (move && !event.ctrlKey && !event.metaKey && !event.altKey) {
       event.preventDefault();

@@ -171,6 +171,12 @@ export function showCompare() {
       });
 }
 
+/** Names the chosen file on its button. */
+function nameFile() {
+  const [file] = element('compare-file').files;
+  setVerbatim(element('compare-chosen'), file?.name ?? text('compare.file'));
+}
+
 /** Fetches the fragment, and attaches its handlers. */
 export async function prepareCompare() {
   await awaitFragment(element('compare'), 'compare.html');
@@ -179,8 +185,14 @@ export async function prepareCompare() {
     event.preventDefault();
     element('compare-start').getAttribute('aria-disabled') !== 'true' && compare();
   });
-  element('compare-file').addEventListener('change', () => element('compare-file').files.length > 0 && (element('compare-build').value = ''));
-  element('compare-build').addEventListener('change', () => element('compare-build').value && (element('compare-file').value = ''));
+  element('compare-file').addEventListener('change', () => {
+    element('compare-build').value = element('compare-file').files.length > 0 ? '' : element('compare-build').value;
+    nameFile();
+  });
+  element('compare-build').addEventListener('change', () => {
+    element('compare-file').value = element('compare-build').value ? '' : element('compare-file').value;
+    nameFile();
+  });
   element('compare-tolerance').addEventListener('input', showResult);
   element('compare-print').addEventListener('click', print);
   showCompare();

@@ -3,6 +3,8 @@
 // Positions of the settings are those of the model as scanned, in millimetres. The model in view may have been laid and
 // scaled before.
 
+import {dot, extents} from '../model/section.js';
+
 /**
  * @typedef {Object} Edits
  * @property {number[][]} [cut_mm]
@@ -19,9 +21,6 @@
  * @property {{down: number[], point: number[]} | null} lay  the direction that becomes down, and the point that becomes
  *     the origin
  */
-
-/** @param {number[]} a @param {number[]} b */
-export const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 /**
  * The smallest rotation of a direction to -Z, row by row; from +Z the one about X.
@@ -73,16 +72,7 @@ export function restOf(positions, up) {
   const length = Math.hypot(...across);
   const u = across.map((value) => value / length);
   const v = [up[1] * u[2] - up[2] * u[1], up[2] * u[0] - up[0] * u[2], up[0] * u[1] - up[1] * u[0]];
-  const axes = [u, v, up];
-  const min = [Infinity, Infinity, Infinity];
-  const max = [-Infinity, -Infinity, -Infinity];
-  for (let i = 0; i < positions.length; i += 3) {
-    for (let axis = 0; axis < 3; ++axis) {
-      const at = positions[i] * axes[axis][0] + positions[i + 1] * axes[axis][1] + positions[i + 2] * axes[axis][2];
-      min[axis] = Math.min(min[axis], at);
-      max[axis] = Math.max(max[axis], at);
-    }
-  }
+  const {min, max} = extents(positions, [u, v, up]);
   const at = [(min[0] + max[0]) / 2, (min[1] + max[1]) / 2, min[2]];
   return [0, 1, 2].map((axis) => at[0] * u[axis] + at[1] * v[axis] + at[2] * up[axis]);
 }

@@ -2,11 +2,11 @@
 
 import * as api from '../api/api.js';
 import {element, pressed, setText, show} from '../base/dom.js';
+import {fetchFragment} from '../base/fragment.js';
 import * as format from '../base/format.js';
 import {coarseUrl, hasCoarse, loadsUnasked} from '../state.js';
 import {readStl} from '../model/stl.js';
 import {text} from '../base/texts.js';
-import {offerPaints, prepareTools, putToolsAway, standUp, useTool} from './view_tools.js';
 
 /** @typedef {ReturnType<import('../screen.js').screenOf>['stage']} Stage */
 /** @typedef {import('../api/api.js').Model} Model */
@@ -16,6 +16,10 @@ const isStill = matchMedia('(prefers-reduced-motion: reduce)').matches;
 
 /** @type {import('../model/viewer.js').Viewer | undefined} */
 let viewer;
+/** @type {Promise<void> | null} */
+let opening = null;
+/** @type {typeof import('./view_tools.js')} they come with the viewer */
+let tools;
 /** @type {string | null} url of the model that is shown, offered or loading */
 let current = null;
 let object = '';  // the scan of that model
@@ -29,7 +33,7 @@ let loading = new AbortController();
 function note(words, {button, progress, isOver = false} = {}) {
   show(element('model-note'), words !== '');
   element('model-note').classList.toggle('over', isOver);
-  show(element('tools'), words === '');
+  show(element('model-tools'), words === '');
   setText(element('model-text'), words);
   show(element('model-progress'), progress !== undefined);
   element('model-progress').value = progress ?? 0;
@@ -38,13 +42,22 @@ function note(words, {button, progress, isOver = false} = {}) {
 }
 
 async function openViewer() {
-  const {Viewer} = await import('../model/viewer.js');
-  return new Viewer(element('view'), {
+  const [{Viewer}, loaded] = await Promise.all([
+    import('../model/viewer.js'), import('./view_tools.js'), fetchFragment(element('model-tools'), 'tools.html')]);
+  viewer = new Viewer(element('view'), element('labels'), {
     onTurning: (isTurning) => pressed('turn', isTurning),
     onLost: () => note(text('view.lost'), {button: text('view.again')}),
-    onPlace: useTool,
+    onPlace: loaded.useTool,
   });
+  tools = loaded;
+  tools.prepareTools(() => viewer);
 }
+
+/** Opens the viewer and its tools once. */
+const awaitViewer = () => opening ??= openViewer().catch((error) => {
+  opening = null;
+  throw error;
+});
 
 /** Updates the marked places once the model is loaded. */
 function markPlaces() {
@@ -61,8 +74,8 @@ function markPlaces() {
 function put(mesh, isFirst, isCoarse = false) {
   show(element('filled'), mesh.filled !== null);
   viewer?.show(mesh, {isFirst, isGrowing: Boolean(due?.growing), isCoarse});
-  standUp();
-  offerPaints(due?.model?.url ?? null, due?.paint ?? null, due?.isSolid);
+  tools.standUp();
+  tools.offerPaints(due?.model?.url ?? null, due?.paint ?? null, due?.isSolid);
   if (isFirst) {
     viewer?.turn(!isStill);
   }
@@ -96,7 +109,7 @@ async function begin(isFirst) {
   }
   note(text('view.loading'), {progress: 0});
   try {
-    viewer ??= await openViewer();
+    await awaitViewer();
     return signal;
   } catch {
     note(text('view.no-webgl'));
@@ -116,7 +129,7 @@ async function load(model, {isFirst = true} = {}) {
     if (!signal.aborted) {
       put(mesh, isFirst && !isCoarse);
       note('');
-      putToolsAway();
+      tools.putToolsAway();
       marked = [];
       markPlaces();
     }
@@ -154,7 +167,7 @@ async function grow(growing) {
   growth = new AbortController();
   const {signal} = growth;
   try {
-    viewer ??= await openViewer();
+    await awaitViewer();
     const mesh = await readStl(await api.growing(growing.url, signal));
     if (!signal.aborted) {
       put(mesh, isFirst);
@@ -233,20 +246,7 @@ export const paintModel = (url, colours) => current === url && viewer?.paint(col
 /** The picture of the model, as the address of a PNG; empty: there is none. */
 export const modelPicture = () => viewer?.picture() ?? '';
 
-/** Attaches the handlers of the picture's buttons. */
+/** Attaches the handler of the picture's button. */
 export function prepareStage() {
-  prepareTools(() => viewer);
   element('load-model').addEventListener('click', () => wanted && load(wanted));
-  element('reset-view').addEventListener('click', () => viewer?.reset());
-  element('turn').addEventListener('click', () => viewer?.turn(element('turn').getAttribute('aria-pressed') !== 'true'));
-  element('filled').addEventListener('click', () => {
-    const isShown = element('filled').getAttribute('aria-pressed') !== 'true';
-    pressed('filled', isShown);
-    viewer?.showFilled(isShown);
-  });
-  element('edges').addEventListener('click', () => {
-    const areShown = element('edges').getAttribute('aria-pressed') !== 'true';
-    pressed('edges', areShown);
-    viewer?.showEdges(areShown);
-  });
 }

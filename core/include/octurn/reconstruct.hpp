@@ -55,8 +55,8 @@ struct SolidOptions {
   /// With several poses `main` is always used: the object that was turned over is one.
   Parts parts = Parts::main;
 
-  /// Edges are collapsed beyond `target_error` until at most this many triangles are left, if
-  /// collapsing them can do that.
+  /// Edges are collapsed beyond `target_error` until at most this many triangles are left. Error
+  /// "model-too-large" if they cannot be so few.
   std::optional<std::uint64_t> max_triangles = {};
 };
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <limits>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -224,10 +227,19 @@ std::uint64_t SolidReconstructor::draw_limited(const VoxelMask& solid, const Fie
   };
   double target_error = options_.target_error;
   if (const auto max = options_.solid.max_triangles) {
+    std::uint64_t fewest = std::numeric_limits<std::uint64_t>::max();
     const auto is_too_many = [&](double error) {
-      return draw_with(error, [](std::span<const Facet>) {}) > *max;
+      const std::uint64_t count = draw_with(error, [](std::span<const Facet>) {});
+      fewest = std::min(fewest, count);
+      return count > *max;
     };
     target_error = min_error(target_error, max_error_voxels * field.voxel_side(), is_too_many);
+    if (fewest > *max && is_too_many(target_error)) {
+      throw Error(ErrorCode::model_too_large,
+                  "the model cannot have fewer than " + std::to_string(fewest) + " triangles",
+                  "Allow more triangles, or choose a larger leaf size.",
+                  {{"least_triangles", static_cast<double>(fewest)}});
+    }
   }
   return draw_with(target_error, sink);
 }

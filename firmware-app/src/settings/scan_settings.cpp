@@ -283,7 +283,7 @@ std::vector<Field> fields(EditSettings& settings) {
        .access = number(edits.scale, min_scale, max_scale)},
       {.key = "max_triangles",
        .help = "number of triangles that the model may have: max_error_mm is raised until it has "
-               "no more, or as few as that can reach",
+               "no more; a build that cannot have so few is refused",
        .access = whole(settings.max_triangles, min_triangles, max_triangles),
        .method = "solid",
        .default_text = "no limit"},

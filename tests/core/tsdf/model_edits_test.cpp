@@ -238,6 +238,9 @@ TEST(Edits, LimitTheNumberOfTriangles) {
     EXPECT_GT(model.facets.size(), max / 2);  // and not far fewer
     EXPECT_TRUE(topology_of(model.facets).manifold);
   }
+  ReconstructOptions few = edit_options();
+  few.solid.max_triangles = 4;
+  EXPECT_EQ(code_thrown_by([&] { build(few, snapshots); }), "model-too-large");
   ReconstructOptions ample = edit_options();
   ample.solid.max_triangles = usual;
   EXPECT_EQ(build(ample, snapshots).facets.size(), usual);

@@ -475,6 +475,10 @@ Response pack_collection(App& app, const Request& request, const std::vector<Job
     throw Error(ErrorCode::no_model, "none of these scans has a model", "Choose others.");
   }
   expect_room(app.store.data(), app.store.free_bytes(), 2 * bytes, "an archive of models");
+  if (request.method == "HEAD") {
+    return {.headers = {{"Content-Type", "application/zip"}},
+            .body = ByteStream{}};  // of a length not known yet
+  }
   const Scratch archive(app.store.data() / "scans" / ".export-scans.zip");
   std::async(std::launch::async, write_collection, jobs, models, names, archive.path()).get();
   return file_response(request, archive.path(), "application/zip", "scans.zip");

@@ -79,13 +79,16 @@ function sidesOf(state, scan) {
   return [scan, ...others.filter((side) => side !== null)];
 }
 
+const mostSizeError = 0.01;  // of the length: a board or a known length tells more
+
 /** @param {import('./api/api.js').Model} model */
 function sizeFacts({quality}) {
   if (!quality?.size_error) {
     return [];
   }
   const {mm, of_mm} = quality.size_error;
-  const error = text('fact.size-error-of', {error: format.millimetres(mm, 1), length: format.millimetres(of_mm, 0)});
+  const key = mm > mostSizeError * of_mm ? 'fact.size-error-large' : 'fact.size-error-of';
+  const error = text(key, {error: format.millimetres(mm, 1), length: format.millimetres(of_mm, 0)});
   return [{label: text('fact.size-error'), text: error}];
 }
 
@@ -109,12 +112,12 @@ function factsOf(scan, sides) {
     return capture;
   }
   return [
+    ...sizeFacts(model),
     {label: text('fact.triangles'), text: format.number(model.triangles)},
     model.watertight ? {label: text('fact.watertight'), text: text('yes')} : {label: text('fact.watertight'), text: text('fact.open'), tone: 'warn'},
     ...(model.filled_share === null ? [] :
       [{label: text('fact.seen'), text: text('fact.seen-share', {share: format.percent(1 - model.filled_share)})}]),
     {label: text('fact.volume'), text: `${format.number(model.volume_cm3)} cm³`},
-    ...sizeFacts(model),
     ...droppedFacts(model),
     {label: text('fact.detail'), text: text(`fact.${settings.method}`, {leaf: format.leaf(settings.leaf_size_mm)})},
     ...capture,

@@ -81,10 +81,13 @@ test('a finished scan shows its size, its facts and its download', () => {
   assert.equal(title, 'Owl · Octurn');
 });
 
-test('a finished scan tells within what its sizes are right', () => {
-  const quality = {verdict: 'good', reasons: [], size_error: {mm: 0.6234, of_mm: 150.98}};
-  const {facts} = screenOf(looking({...finished, model: {...finished.model, quality}})).details;
-  assert.equal(facts.find(({label}) => label === 'Sizes right within').text, '±0.6 mm in 151 mm');
+test('a finished scan tells first within what its sizes are right, and what would tell them better', () => {
+  const told = (mm) => {
+    const quality = {verdict: 'good', reasons: [], size_error: {mm, of_mm: 150.98}};
+    return screenOf(looking({...finished, model: {...finished.model, quality}})).details.facts[0];
+  };
+  assert.deepEqual(told(0.6234), {label: 'Sizes right within', text: '±0.6 mm in 151 mm'});
+  assert.equal(told(3.03).text, '±3.0 mm in 151 mm; a printed board or a known length lowers this');
 });
 
 test('a model with open edges is not called ready', () => {

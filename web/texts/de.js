@@ -344,6 +344,7 @@ export const texts = {
   'fact.volume': 'Volumen',
   'fact.size-error': 'Maße genau auf',
   'fact.size-error-of': '±{error} auf {length}',
+  'fact.size-error-large': '±{error} auf {length}; ein Schachbrett oder eine bekannte Länge verringert das',
   'fact.detail': 'Detail',
   'fact.solid': '{leaf}, Körper',
   'fact.intersection': '{leaf}, Schale',

@@ -376,6 +376,7 @@ export const texts = {
   'fact.volume': 'Volume',
   'fact.size-error': 'Sizes right within',
   'fact.size-error-of': '±{error} in {length}',
+  'fact.size-error-large': '±{error} in {length}; a printed board or a known length lowers this',
   'fact.detail': 'Detail',
   'fact.solid': '{leaf}, solid',
   'fact.intersection': '{leaf}, by intersection',

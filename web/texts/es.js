@@ -344,6 +344,7 @@ export const texts = {
   'fact.volume': 'Volumen',
   'fact.size-error': 'Medidas exactas a',
   'fact.size-error-of': '±{error} en {length}',
+  'fact.size-error-large': '±{error} en {length}; un tablero o una longitud conocida lo reduce',
   'fact.detail': 'Detalle',
   'fact.solid': '{leaf}, sólido',
   'fact.intersection': '{leaf}, cáscara',

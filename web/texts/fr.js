@@ -344,6 +344,7 @@ export const texts = {
   'fact.volume': 'Volume',
   'fact.size-error': 'Dimensions justes à',
   'fact.size-error-of': '±{error} sur {length}',
+  'fact.size-error-large': '±{error} sur {length} ; un damier ou une longueur connue fait mieux',
   'fact.detail': 'Détail',
   'fact.solid': '{leaf}, solide',
   'fact.intersection': '{leaf}, coque',

@@ -65,11 +65,11 @@ class DepthSampler {
   /// Bilinear between four readings of one surface, else the nearest pixel's reading.
   /// @return depth units; 0 without a reading or outside the image
   double operator()(double u, double v) const {
-    const double left = std::floor(u);
-    const double top = std::floor(v);
-    if (!(left >= 0 && top >= 0 && left + 1 < frame_.width && top + 1 < frame_.height)) {
+    if (!(u >= 0 && v >= 0 && u < frame_.width - 1 && v < frame_.height - 1)) {
       return nearest(u, v);
     }
+    const auto left = static_cast<int>(u);  // several times as fast as std::floor
+    const auto top = static_cast<int>(v);
     const auto width = static_cast<std::size_t>(frame_.width);
     const std::uint16_t* above =
         &frame_.depth[static_cast<std::size_t>(top) * width + static_cast<std::size_t>(left)];
@@ -86,8 +86,8 @@ class DepthSampler {
 
  private:
   double nearest(double u, double v) const {
-    const double column = std::floor(u + 0.5);
-    const double row = std::floor(v + 0.5);
+    const double column = u + 0.5;
+    const double row = v + 0.5;
     if (!(column >= 0 && row >= 0 && column < frame_.width && row < frame_.height)) {
       return 0;
     }
@@ -125,10 +125,14 @@ DepthFrame rectified(DepthFrame frame, const Intrinsics& sensor, const SensorOpt
   const DepthSampler sample(frame, sensor.depth_unit);
   DepthFrame pinhole{.width = frame.width, .height = frame.height, .depth = {}};
   pinhole.depth.reserve(frame.depth.size());
+  std::vector<double> columns;
+  for (int u = 0; u < frame.width; ++u) {
+    columns.push_back((u - optics.cx) / optics.fx);
+  }
   for (int v = 0; v < frame.height; ++v) {
     const double y = (v - optics.cy) / optics.fy;
     for (int u = 0; u < frame.width; ++u) {
-      const double x = (u - optics.cx) / optics.fx;
+      const double x = columns[static_cast<std::size_t>(u)];
       const double shift = distortion.shift(x * x + y * y);
       const double depth = sample(u + optics.fx * x * shift, v + optics.fy * y * shift);
       pinhole.depth.push_back(depth > 0 ? rounded_depth(depth / (1 + offset * depth)) : 0);

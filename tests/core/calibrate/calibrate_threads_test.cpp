@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/calibrate/rendered_turn.hpp"
+#include "octurn/optics_json.hpp"
 
 namespace octurn {
 namespace {
@@ -34,8 +35,8 @@ std::string to_text(const CalibrationReport& report) {
          "\n";
 }
 
-std::string golden_text() {
-  std::ifstream file(std::filesystem::path(OCTURN_GOLDEN) / "solved_pose.json");
+std::string golden_text(const char* name) {
+  std::ifstream file(std::filesystem::path(OCTURN_GOLDEN) / name);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
@@ -46,7 +47,19 @@ TEST(Calibrate, GivesTheSameBitsOnEveryProcessorAndForAnyNumberOfThreads) {
   for (const int threads : {1, 4}) {
     const CalibrationReport report = calibrate(turn, threads);
     ASSERT_TRUE(report.accepted) << report.reason;
-    EXPECT_EQ(to_text(report), golden_text()) << threads << " threads";
+    EXPECT_EQ(to_text(report), golden_text("solved_pose.json")) << threads << " threads";
+  }
+}
+
+TEST(Calibrate, GivesTheSameBitsOfOpticsOnEveryProcessorAndForAnyNumberOfThreads) {
+  CalibrationTurn turn = rendered_turn(figure(), 8);
+  turn.intrinsics = {.fx = 590.5, .fy = 590.5, .cx = 311, .cy = 246.5};
+  for (const int threads : {1, 2, 4}) {
+    const CalibrationReport report = calibrate(turn, threads);
+    ASSERT_TRUE(report.optics_differ) << report.reason;
+    EXPECT_EQ(to_text(report) + to_json(*report.optics).dump(1) + "\n",
+              golden_text("solved_optics.txt"))
+        << threads << " threads";
   }
 }
 

@@ -32,7 +32,7 @@ std::string_view to_string(Verdict verdict);
 struct QualityReason {
   /// "empty", "too-low", "turntable", "alike", "stops-disagree", "moved", "focal-length", "optics",
   /// "floats", "sunk", "top-unseen", "little-seen", "filled-far", "hollow-filled", "cut-by-box",
-  /// "parts-dropped", "part-missing", "warm-up"
+  /// "parts-dropped", "part-missing", "swollen", "large-file", "warm-up"
   std::string code = {};
   std::string detail = {};     ///< what was found and its size, for people
   std::string hint = {};       ///< what to do about it
@@ -66,6 +66,15 @@ struct Quality {
 struct BelowBox {
   double noise_end = 0;  ///< metres above z = 0: end of the platform's noise
   double pixels = 0;     ///< mean number at a stop between there and the box's bottom
+
+  /// Whether most of an object lies there. @param inside  mean number at a stop inside the box
+  bool has_most(double inside) const;
+};
+
+/// How a hollow shell of leaves lies on the surface that the stops saw.
+struct ShellFigures {
+  double swelling = 0;     ///< metres: by which its outside is further out
+  double stray_share = 0;  ///< of the leaves: where stops saw free space, and none a surface
 };
 
 /// Measurements on the depth images of a scan, with the poses and the clip box of its model.
@@ -93,6 +102,7 @@ struct ScanFigures {
   BelowBox below = {};
   /// Metres above the highest reading of the object: end of a hole in the readings, at most stops.
   double unseen_top = 0;
+  ShellFigures shell = {};
 };
 
 /// Measures the depth images of a scan while they are read for its model.
@@ -112,12 +122,18 @@ class ScanCheck {
   void add(std::size_t stop, const Snapshot& snapshot);
 
   /// Compares the stops that were added. Deterministic for any number of threads.
-  ScanFigures figures(int threads = 1) const;
+  /// @param leaves  metres, object's frame: as `ModelPlaces::leaves`, to compare with the stops
+  ScanFigures figures(int threads = 1, std::span<const Eigen::Vector3d> leaves = {}) const;
+
+  /// Metres: where the box could begin, if most of what stands on the platform is below it.
+  std::optional<double> lower_bottom() const;
 
   /// The samples that are kept of one stop.
   struct Stop;
 
  private:
+  std::vector<const Stop*> added() const;
+
   Box clip_;
   SensorTraits sensor_;
   std::vector<std::unique_ptr<Stop>> stops_;
@@ -136,12 +152,20 @@ class PoseChecks {
   void add(std::size_t stop, const Snapshot& snapshot);
 
   /// Returns the figures of each pose, with places in the object's frame.
-  std::vector<ScanFigures> figures(int threads) const;
+  /// @param leaves  as in `ScanCheck::figures`; compared with the first pose
+  std::vector<ScanFigures> figures(int threads, std::span<const Eigen::Vector3d> leaves) const;
+
+  /// As `ScanCheck::lower_bottom`; nothing for several poses.
+  std::optional<double> lower_bottom() const;
 
  private:
   std::vector<Placement> placements_;
   std::vector<std::unique_ptr<ScanCheck>> checks_;
 };
+
+/// Throws an error with this cause in place of "model-empty", if the object is below the clip box.
+/// @param error  of the model of the snapshots that were added
+void expect_higher_object(const Error& error, const PoseChecks& checks);
 
 /// Wraps a source: each snapshot that is read is also added to `checks`, which must outlive it.
 SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks);

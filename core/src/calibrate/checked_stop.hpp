@@ -80,4 +80,9 @@ struct StopComparison {
 StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops,
                              const SensorTraits& sensor, int threads);
 
+/// Compares leaves of a hollow shell with the surfaces that the stops saw.
+/// @param leaves  metres, object's frame
+ShellFigures compare_shell(const std::vector<const ScanCheck::Stop*>& stops,
+                           std::span<const Eigen::Vector3d> leaves);
+
 }  // namespace octurn

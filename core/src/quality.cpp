@@ -145,7 +145,7 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
              "two stops disagree about the object by " + mm_text(scan.disagreement, text_digits),
          .hint = "Calibrate the rig, and check that object and sensor stand firm.",
          .parameters = {{"disagreement_mm", mm_from_metres(scan.disagreement)}},
-         .places = scan.disagreeing_places});
+         .places = scan.differing.disagreeing});
   }
   const auto odd = std::ranges::max_element(scan.contradicted);
   if (scan.disagreement <= look_disagreement && odd != scan.contradicted.end() &&
@@ -158,7 +158,7 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
          .hint = "Keep hands out of the picture, and check that nothing moves.",
          .parameters = {{"stop", static_cast<double>(odd - scan.contradicted.begin())},
                         {"empty_share", *odd}},
-         .places = scan.contradicted_places});
+         .places = scan.differing.contradicted});
   }
 }
 

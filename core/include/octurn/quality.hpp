@@ -71,6 +71,14 @@ struct BelowBox {
   bool has_most(double inside) const;
 };
 
+/// Where stops differ: metres, object's frame.
+struct DifferingPlaces {
+  /// Surfaces whose distance is far larger than noise.
+  std::vector<Eigen::Vector3d> disagreeing = {};
+  /// Readings in free space, at the stop that has most of them.
+  std::vector<Eigen::Vector3d> contradicted = {};
+};
+
 /// How a hollow shell of leaves lies on the surface that the stops saw.
 struct ShellFigures {
   double swelling = 0;     ///< metres: by which its outside is further out
@@ -91,12 +99,9 @@ struct ScanFigures {
   /// Metres: measured z of the platform's surface; nothing if it is not seen.
   std::optional<double> platform_height = {};
   double disagreement = 0;  ///< metres: median distance between the surfaces that two stops saw
-  /// Metres, object's frame: where that distance is far larger than noise.
-  std::vector<Eigen::Vector3d> disagreeing_places = {};
   /// For each stop: the share of its readings of the object that other stops see to be free space.
   std::vector<double> contradicted = {};
-  /// Metres, object's frame: these readings, at the stop with the largest share.
-  std::vector<Eigen::Vector3d> contradicted_places = {};
+  DifferingPlaces differing = {};
   /// Metres, object's frame: centres of 5 mm cells in which several stops saw the object.
   std::vector<Eigen::Vector3d> seen = {};
   BelowBox below = {};

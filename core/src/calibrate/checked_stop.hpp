@@ -71,9 +71,8 @@ struct ScanCheck::Stop {
 struct StopComparison {
   double disagreement = 0;  ///< metres: the median of the distances
   /// As in `ScanFigures`.
-  std::vector<Eigen::Vector3d> disagreeing_places = {};
   std::vector<double> contradicted = {};
-  std::vector<Eigen::Vector3d> contradicted_places = {};
+  DifferingPlaces differing = {};
 };
 
 /// Compares each stop's readings of the object with the surfaces that neighbouring stops saw.

@@ -119,13 +119,13 @@ StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops,
                                static_cast<double>(std::max<std::size_t>(stop.readings, 1)));
   }
   all.disagreement = median(std::move(distances));
-  all.disagreeing_places = disagreeing.centres();
+  all.differing.disagreeing = disagreeing.centres();
   const auto odd = std::ranges::max_element(all.contradicted) - all.contradicted.begin();
   Places contradicted;
   for (const Vector3d& point : of_stops[static_cast<std::size_t>(odd)].contradicted) {
     contradicted.add(point);
   }
-  all.contradicted_places = contradicted.centres();
+  all.differing.contradicted = contradicted.centres();
   return all;
 }
 

@@ -192,9 +192,8 @@ ScanFigures ScanCheck::figures(int threads, std::span<const Eigen::Vector3d> lea
   figures.shell = compare_shell(stops, leaves);
   StopComparison comparison = compare_stops(stops, sensor_, threads);
   figures.disagreement = comparison.disagreement;
-  figures.disagreeing_places = std::move(comparison.disagreeing_places);
   figures.contradicted = std::move(comparison.contradicted);
-  figures.contradicted_places = std::move(comparison.contradicted_places);
+  figures.differing = std::move(comparison.differing);
   return figures;
 }
 
@@ -233,8 +232,8 @@ std::vector<ScanFigures> PoseChecks::figures(int threads,
       }
     };
     std::ranges::for_each(figures.cut_places, move);
-    move(figures.disagreeing_places);
-    move(figures.contradicted_places);
+    move(figures.differing.disagreeing);
+    move(figures.differing.contradicted);
     move(figures.seen);
     all.push_back(std::move(figures));
   }

@@ -51,7 +51,7 @@ TEST(ScanCheck, SeesThatStopsDisagreeWithARigTwoDegreesOff) {
   // apart.
   EXPECT_GT(figures(turn).disagreement, 2 * right);
   EXPECT_GT(figures(turn).disagreement, 0.0011);
-  EXPECT_FALSE(figures(turn).disagreeing_places.empty());
+  EXPECT_FALSE(figures(turn).differing.disagreeing.empty());
 }
 
 TEST(ScanCheck, MeasuresHowFarThePlatformIsFromWhereItShouldBe) {
@@ -110,8 +110,8 @@ TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
   const auto& contradicted = scan.contradicted;
   EXPECT_EQ(std::ranges::max_element(contradicted) - contradicted.begin(), 3);
   EXPECT_GT(contradicted[3], 0.1);
-  ASSERT_FALSE(scan.contradicted_places.empty());
-  for (const Eigen::Vector3d& place : scan.contradicted_places) {
+  ASSERT_FALSE(scan.differing.contradicted.empty());
+  for (const Eigen::Vector3d& place : scan.differing.contradicted) {
     // The ball's radius, half a cell's diagonal, and the noise.
     EXPECT_LT((place - Eigen::Vector3d(-0.075, 0.075, 0.05)).norm(), 0.03 + 0.0035 + 0.002);
   }

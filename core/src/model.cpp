@@ -198,7 +198,14 @@ BuiltModel build_model(ModelInput input, const std::stop_token& stop) {
   input.progress(BuildStep::adding, 0);
   reconstructor->add(added, stop);
   input.progress(BuildStep::writing, static_cast<int>(stored.count));
-  model.report = input.write(*reconstructor, stored);
+  try {
+    model.report = input.write(*reconstructor, stored);
+  } catch (const Error& error) {
+    if (checks) {
+      expect_higher_object(error, *checks);
+    }
+    throw;
+  }
   if (!model.report) {
     throw_if_stopped(stop);
   } else if (checks) {

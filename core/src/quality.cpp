@@ -8,6 +8,7 @@
 #include <numbers>
 #include <utility>
 
+#include "calibrate/checked_stop.hpp"
 #include "calibrate/missing_part.hpp"
 #include "calibrate/object_view.hpp"
 #include "io/number_text.hpp"
@@ -38,12 +39,18 @@ constexpr double max_unseen_top = 0.01;  // metres: a Kinect loses 2 to 4 pixels
 constexpr double min_hollow = 0.015;     // metres, depth of a filled hollow
 constexpr std::size_t min_hollow_places = 8;
 constexpr std::size_t most_stops_of_few = 3;
-// An object that is mostly below the box has this many times as many pixels there as inside.
-constexpr double mostly_low = 3;
-
 constexpr double max_cut_pixels = 6;  // a depth image: 7 mm at 0.65 m
 constexpr double max_dropped = 0.01;  // of the model's volume
 constexpr double min_dropped = 2e-7;  // cubic metres
+constexpr double max_crumb = 5e-8;    // cubic metres, of the platform's noise
+
+// Of a model by intersection, metres beyond a leaf: the swelling that its readings' noise makes.
+constexpr double max_swelling = 0.0018;
+constexpr double max_stray = 0.01;                 // of its leaves
+constexpr double max_beyond = 0.02;                // metres, two cells, their swelling and leaves
+constexpr std::uint64_t large_file = 200'000'000;  // bytes: four million triangles
+
+constexpr const char* solid_hint = "Build the model again with the method solid.";
 
 constexpr int text_digits = 1;  // of millimetres
 
@@ -74,23 +81,25 @@ double focal_sigma(const Scan& scan, const std::optional<SolvedPose>& solved,
 enum class Link { platform, turn, pose, sight, model };
 
 Link find_link(const QualityReason& reason) {
-  constexpr std::array<std::pair<std::string_view, Link>, 12> links{
-      {{"empty", Link::platform},
-       {"too-low", Link::platform},
-       {"lasers-exchanged", Link::turn},
-       {"turntable", Link::turn},
-       {"alike", Link::turn},
-       {"top-unseen", Link::sight},
-       {"little-seen", Link::sight},
-       {"filled-far", Link::sight},
-       {"cut-by-box", Link::sight},
-       {"hollow-filled", Link::model},
-       {"parts-dropped", Link::model},
-       {"part-missing", Link::model}}};
+  using CodeLink = std::pair<std::string_view, Link>;
+  constexpr std::array<CodeLink, 14> links{{{"empty", Link::platform},
+                                            {"too-low", Link::platform},
+                                            {"lasers-exchanged", Link::turn},
+                                            {"turntable", Link::turn},
+                                            {"alike", Link::turn},
+                                            {"top-unseen", Link::sight},
+                                            {"little-seen", Link::sight},
+                                            {"filled-far", Link::sight},
+                                            {"cut-by-box", Link::sight},
+                                            {"hollow-filled", Link::model},
+                                            {"parts-dropped", Link::model},
+                                            {"part-missing", Link::model},
+                                            {"swollen", Link::model},
+                                            {"large-file", Link::model}}};
   if (reason.code == "moved") {  // found by the calibration, or by what other stops saw through
     return reason.parameters.contains("empty_share") ? Link::sight : Link::turn;
   }
-  const auto found = std::ranges::find(links, reason.code, &decltype(links)::value_type::first);
+  const auto found = std::ranges::find(links, reason.code, &CodeLink::first);
   return found == links.end() ? Link::pose : found->second;
 }
 
@@ -137,7 +146,7 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
              "two stops disagree about the object by " + mm_text(scan.disagreement, text_digits),
          .hint = "Calibrate the rig, and check that object and sensor stand firm.",
          .parameters = {{"disagreement_mm", mm_from_metres(scan.disagreement)}},
-         .places = scan.disagreeing_places});
+         .places = scan.differing.disagreeing});
   }
   const auto odd = std::ranges::max_element(scan.contradicted);
   if (scan.disagreement <= look_disagreement && odd != scan.contradicted.end() &&
@@ -150,7 +159,7 @@ void judge_agreement(Judgement& judgement, const ScanFigures& scan) {
          .hint = "Keep hands out of the picture, and check that nothing moves.",
          .parameters = {{"stop", static_cast<double>(odd - scan.contradicted.begin())},
                         {"empty_share", *odd}},
-         .places = scan.contradicted_places});
+         .places = scan.differing.contradicted});
   }
 }
 
@@ -346,7 +355,10 @@ void add_missing(Judgement& judgement, MissingPart missing) {
 
 void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
   auto missing = find_missing_part(scan, model);
-  if (model.dropped.volume > min_dropped && model.dropped.volume > max_dropped * model.volume) {
+  const bool are_crumbs =
+      !missing && model.dropped.volume < max_crumb * static_cast<double>(model.dropped.count);
+  if (!are_crumbs && model.dropped.volume > min_dropped &&
+      model.dropped.volume > max_dropped * model.volume) {
     judgement.add(
         model.dropped.volume > model.volume ? Verdict::bad : Verdict::look,
         {.code = "parts-dropped",
@@ -365,15 +377,64 @@ void judge_parts(Judgement& judgement, const ScanFigures& scan, const ModelRepor
   }
 }
 
+/// By how much a model is larger than what several stops saw, metres.
+double size_beyond(const ScanFigures& scan, const ModelReport& model) {
+  Eigen::AlignedBox3d seen;
+  for (const Eigen::Vector3d& middle : scan.seen) {
+    if (middle.z() > scan.below.noise_end + object_cell_side / 2) {
+      seen.extend(middle);
+    }
+  }
+  const Eigen::Vector3d cell = Eigen::Vector3d::Constant(object_cell_side);
+  return seen.isEmpty() ? 0 : (model.size - seen.sizes() - cell).head<2>().maxCoeff();
+}
+
+/// Judges the hollow shell of the method `intersection`, which encloses the noise of all stops.
+void judge_shell(Judgement& judgement, const ScanFigures& scan, const ModelReport& model) {
+  if (model.places.leaves.empty()) {
+    return;
+  }
+  const double noise = std::pow(std::max(scan.distance / scan.sensor.noise_distance, 1.0), 2);
+  if (scan.shell.swelling > max_swelling * noise + voxel_side(model)) {
+    judgement.add(Verdict::look,
+                  {.code = "swollen",
+                   .detail = "the surface lies up to " + mm_text(scan.shell.swelling, text_digits) +
+                             " outside of what the stops saw",
+                   .hint = solid_hint,
+                   .parameters = {{"swelling_mm", mm_from_metres(scan.shell.swelling)}}});
+  } else if (scan.shell.stray_share > max_stray) {
+    judgement.add(Verdict::look, {.code = "swollen",
+                                  .detail = percent_text(scan.shell.stray_share) +
+                                            " of the surface lies where the stops saw empty space",
+                                  .hint = solid_hint,
+                                  .parameters = {{"stray_share", scan.shell.stray_share}}});
+  } else if (const double beyond = size_beyond(scan, model); beyond > max_beyond) {
+    judgement.add(Verdict::look,
+                  {.code = "swollen",
+                   .detail = "stray pieces make the model " + mm_text(beyond, text_digits) +
+                             " larger than what several stops saw",
+                   .hint = solid_hint,
+                   .parameters = {{"stray_mm", mm_from_metres(beyond)}}});
+  }
+  if (model.bytes > large_file) {
+    const double mb = std::round(decimal_mb_from_bytes(static_cast<double>(model.bytes)));
+    judgement.add(Verdict::look, {.code = "large-file",
+                                  .detail = "the file has " + number_text("%.0f MB", mb) +
+                                            ", which few slicers open",
+                                  .hint = solid_hint,
+                                  .parameters = {{"file_mb", mb}}});
+  }
+}
+
 /// Reports an object that lies between the platform's noise and the box.
 void judge_low(Judgement& judgement, const ScanFigures& scan) {
   judgement.add(Verdict::bad,
                 {.code = "too-low",
                  .detail = "what lies on the platform is lower than the scanned space, which could "
                            "begin " +
-                           mm_text(scan.below.noise_end, text_digits) + " above the platform",
+                           mm_text(scan.below.noise_end / 2, text_digits) + " above the platform",
                  .hint = "Build the model again with a scanned space that begins lower.",
-                 .parameters = {{"noise_end_mm", mm_from_metres(scan.below.noise_end)}}});
+                 .parameters = {{"noise_end_mm", mm_from_metres(scan.below.noise_end / 2)}}});
 }
 
 /// Judges another pose of a model. Filled surface and dropped parts belong to no single pose.
@@ -406,6 +467,11 @@ void add_reasons(Quality& quality, Quality other, std::size_t side) {
 
 }  // namespace
 
+bool BelowBox::has_most(double inside) const {
+  return noise_end > 0 && pixels > min_object_pixels &&
+         (inside < min_object_pixels || pixels > inside);
+}
+
 std::string_view to_string(Verdict verdict) {
   constexpr std::array<std::string_view, 3> names = {"good", "look", "bad"};
   return names[static_cast<std::size_t>(verdict)];
@@ -425,6 +491,15 @@ std::optional<SizeError> expected_size_error(const Scan& scan, const Eigen::Vect
   return SizeError{
       .length = length,
       .error = stated_sigmas * std::hypot(length * std::hypot(scan.scale_sigma, focal), surface)};
+}
+
+void expect_higher_object(const Error& error, const PoseChecks& checks) {
+  const auto bottom = checks.lower_bottom();
+  if (error.code() == ErrorCode::model_empty && bottom) {
+    throw Error(ErrorCode::model_empty, "what lies on the platform is lower than the scanned space",
+                "Build the model again with a scanned space that begins " +
+                    number_text("%.1f mm", mm_from_metres(*bottom)) + " above the platform.");
+  }
 }
 
 void add_warm_up(Quality& quality, const Scan& scan) {
@@ -452,8 +527,7 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
   Judgement judgement;
   const bool is_empty =
       scan.object_pixels < min_object_pixels || model.volume + model.dropped.volume < min_volume;
-  if (scan.below.pixels > min_object_pixels &&
-      (is_empty || scan.below.pixels > mostly_low * scan.object_pixels)) {
+  if (scan.below.has_most(is_empty ? 0 : scan.object_pixels)) {
     judge_low(judgement, scan);
     return judgement.take();
   }
@@ -476,6 +550,7 @@ Quality judge(const ScanFigures& scan, const ModelReport& model,
     judge_box(judgement, scan);
     judge_parts(judgement, scan, model);
   }
+  judge_shell(judgement, scan, model);
   return judgement.take();
 }
 
@@ -496,7 +571,7 @@ Quality judge(std::span<const ScanFigures> poses, const ModelReport& model,
 Quality judge(const PoseChecks& checks, int threads, const Scan& scan, const ModelReport& model,
               std::span<const CalibrationFinding> findings,
               const std::optional<SolvedOptics>& seen) {
-  Quality quality = judge(checks.figures(threads), model, findings);
+  Quality quality = judge(checks.figures(threads, model.places.leaves), model, findings);
   quality.size_error = expected_size_error(scan, model.size, seen);
   add_warm_up(quality, scan);
   return quality;

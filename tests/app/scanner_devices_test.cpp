@@ -1,11 +1,14 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cmath>
+#include <numbers>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
 #include "app/scanner_fixture.hpp"
+#include "app/simulated_frames.hpp"
 #include "app/wrapped_sensor.hpp"
 #include "octurn/scan_folder.hpp"
 #include "octurn/units.hpp"
@@ -122,6 +125,44 @@ TEST_F(ScannerTest, DoesNotTakeAWrongPoseForLostSteps) {
       Eigen::Translation3d(0.012, -0.016, 0) *
       Eigen::AngleAxisd(radians_from_degrees(2.0), Eigen::Vector3d::UnitX()) *
       settings.platform_from_sensor;
+  const Job job = scan(scanner, settings);
+  EXPECT_EQ(job.state, JobState::finished);
+  EXPECT_EQ(job.times.slips, 0);
+}
+
+/// An STL of a round cup, 8 cm wide and 9.5 cm tall.
+std::string round_cup() {
+  constexpr int sides = 96;
+  const auto vertex = [](double radius, int side, double z) {
+    const double angle = 2 * std::numbers::pi * side / sides;
+    return "vertex " + std::to_string(radius * std::cos(angle)) + " " +
+           std::to_string(radius * std::sin(angle)) + " " + std::to_string(z) + "\n";
+  };
+  std::string stl = "solid cup\n";
+  const auto quad = [&](double r0, double z0, double r1, double z1) {
+    for (int i = 0; i < sides; ++i) {
+      stl += "facet normal 0 0 0\nouter loop\n" + vertex(r0, i, z0) + vertex(r0, i + 1, z0) +
+             vertex(r1, i + 1, z1) + "endloop\nendfacet\nfacet normal 0 0 0\nouter loop\n" +
+             vertex(r0, i, z0) + vertex(r1, i + 1, z1) + vertex(r1, i, z1) + "endloop\nendfacet\n";
+    }
+  };
+  quad(0, 0, 40, 0);
+  quad(40, 0, 40, 95);
+  quad(40, 95, 36, 95);
+  quad(36, 95, 36, 5);
+  quad(36, 5, 0, 5);
+  return stl + "endsolid\n";
+}
+
+TEST_F(ScannerTest, DoesNotTakeARoundObjectForLostSteps) {
+  put(folder_.path() / "cup.stl", round_cup());
+  RigOptions options = rig();
+  options.sensor_uri =
+      simulation_uri({.mesh_file = folder_.path() / "cup.stl", .unit = 1, .speed = 20});
+  options.load = PlatformLoad{};
+  Scanner scanner(options, {}, store_);
+  ScanSettings settings;
+  settings.filter = DepthFilter::basic;
   const Job job = scan(scanner, settings);
   EXPECT_EQ(job.state, JobState::finished);
   EXPECT_EQ(job.times.slips, 0);

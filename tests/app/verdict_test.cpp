@@ -102,7 +102,8 @@ class VerdictTest : public ScannerTest {
  protected:
   /// Runs a scan to its end. @return the scan as the HTTP interface shows it
   json scan_of(const std::function<DepthFrame(int look)>& see,
-               const Box& clip = ScanSettings().clip) {
+               const Box& clip = ScanSettings().clip,
+               double leaf_size = few_snapshots().leaf_size) {
     const auto open = [&](const std::string& /*uri*/) {
       return std::make_unique<SensorOfLooks>(see);
     };
@@ -110,6 +111,7 @@ class VerdictTest : public ScannerTest {
     ScanSettings settings = few_snapshots(verdict_stops);
     settings.frames = 1;
     settings.clip = clip;
+    settings.leaf_size = leaf_size;
     return to_json(scan(scanner, settings));
   }
 
@@ -152,6 +154,29 @@ TEST_F(VerdictTest, IsTheErrorOfAScanOfAnEmptyPlatform) {
       "Stand the object on the platform's middle"));
   EXPECT_TRUE(scan["calibration"]["reason"].get<std::string>().starts_with(
       "too little of an object is seen"));
+}
+
+TEST_F(VerdictTest, LetsTheSpaceBeginWhereThePlatformsNoiseEndsForATile) {
+  const Seen tile = seen({AlignedBox3d(Vector3d(-40, -40, 0), Vector3d(40, 40, 4))});
+  const json scan = scan_of([&](int look) { return at(tile, look); }, ScanSettings().clip, 0.001);
+  ASSERT_EQ(scan["state"], "finished") << scan;
+  EXPECT_EQ(scan["model"]["quality"]["verdict"], "good") << scan;
+  EXPECT_NEAR(scan["model"]["size_mm"][2].get<double>(), 4, 1) << scan;
+  const double bottom = scan["settings"]["clip_mm"][2].get<double>();
+  EXPECT_LT(bottom, 4);
+  EXPECT_GT(bottom, 0.5);
+  const Scan stored = read_scan(store_.folder(scan["id"].get<std::string>()));
+  EXPECT_NEAR(mm_from_metres(stored.clip.min.z()), bottom, 0.001);
+}
+
+TEST_F(VerdictTest, LowersNoSpaceWhoseBottomSomebodyChose) {
+  const Seen tile = seen({AlignedBox3d(Vector3d(-40, -40, 0), Vector3d(40, 40, 4))});
+  Box chosen = ScanSettings().clip;
+  chosen.min.z() = 0.007;
+  const json scan = scan_of([&](int look) { return at(tile, look); }, chosen);
+  EXPECT_EQ(scan["settings"]["clip_mm"][2], 7) << scan;
+  EXPECT_EQ(scan["state"], "failed") << scan;
+  EXPECT_EQ(scan["error"]["detail"], "what lies on the platform is lower than the scanned space");
 }
 
 TEST_F(VerdictTest, SaysThatTheRigWasBumpedInMidScan) {

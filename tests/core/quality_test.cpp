@@ -31,6 +31,12 @@ ModelReport right_model() {
   return {.parts = 1, .unseen_share = 0.05, .volume = m3_from_mm3(300000)};
 }
 
+std::shared_ptr<const SurfaceCells> surface_at(const Eigen::Vector3d& point) {
+  SurfaceCells surface;
+  surface.add(point);
+  return std::make_shared<SurfaceCells>(std::move(surface));
+}
+
 std::vector<std::string> codes(const Quality& quality) {
   std::vector<std::string> codes;
   std::ranges::transform(quality.reasons, std::back_inserter(codes), &QualityReason::code);
@@ -139,6 +145,9 @@ TEST(Judge, LowersTheSpaceForWhatLiesBelowIt) {
   const Quality quality = judge(scan, {});
   EXPECT_EQ(quality.verdict, Verdict::bad);
   EXPECT_EQ(codes(quality), Codes{"too-low"});
+  scan.below.noise_end = -0.003;
+  EXPECT_EQ(codes(judge(scan, {})), Codes{"empty"}) << "a pose that is off is no low object";
+  scan.below.noise_end = 0.002;
   scan.below.pixels = 60;
   EXPECT_EQ(codes(judge(scan, {})), Codes{"empty"});
 }
@@ -162,6 +171,56 @@ TEST(Judge, MentionsAFilledHollowOfAGoodModel) {
   EXPECT_NEAR(std::get<double>(quality.reasons[0].parameters.at("hollow_mm")), 32.5, 0.1);
   std::erase_if(scan.seen, [](const Eigen::Vector3d& seen) { return seen.x() > 0; });
   EXPECT_EQ(judge(scan, model), Quality{}) << "a slope behind which nothing was seen is no hollow";
+}
+
+TEST(Judge, LooksAtAShellThatIsThickerThanNoiseMakesIt) {
+  ScanFigures scan = right_scan();
+  ModelReport model = right_model();
+  model.leaves = 300000;  // of 1 mm
+  model.places.leaves = {{0, 0, 0}};
+  scan.shell.swelling = 0.0027;
+  EXPECT_EQ(judge(scan, model), Quality{});
+  scan.shell.swelling = 0.0030;
+  Quality quality = judge(scan, model);
+  EXPECT_EQ(quality.verdict, Verdict::look);
+  ASSERT_EQ(codes(quality), Codes{"swollen"});
+  EXPECT_EQ(quality.reasons[0].parameters, (Parameters{{"swelling_mm", 3.0}}));
+  EXPECT_EQ(quality.reasons[0].hint, "Build the model again with the method solid.");
+  scan.distance = 0.9;
+  EXPECT_EQ(judge(scan, model), Quality{}) << "noise grows with the square of the distance";
+  scan.shell.stray_share = 0.03;
+  quality = judge(scan, model);
+  ASSERT_EQ(codes(quality), Codes{"swollen"});
+  EXPECT_EQ(quality.reasons[0].parameters, (Parameters{{"stray_share", 0.03}}));
+}
+
+TEST(Judge, LooksAtAShellWhoseStrayPiecesMakeItLarger) {
+  ScanFigures scan = right_scan();
+  scan.below.noise_end = 0.002;
+  scan.seen = {{-0.08, 0, 0.05}, {0.08, 0, 0.05}, {0.14, 0, 0.0025}};  // the last is noise
+  ModelReport model = right_model();
+  model.places.surface = surface_at({0, 0, 0.05});
+  model.places.leaves = {{0, 0, 0}};
+  model.size = {0.175, 0.02, 0.06};
+  EXPECT_EQ(judge(scan, model), Quality{});
+  model.size.x() = 0.219;
+  const Quality quality = judge(scan, model);
+  EXPECT_EQ(quality.verdict, Verdict::look);
+  ASSERT_EQ(codes(quality), Codes{"swollen"});
+  EXPECT_EQ(quality.reasons[0].detail.find("stray pieces make the model 54.0 mm larger"), 0U);
+  model.places.leaves.clear();
+  EXPECT_EQ(judge(scan, model), Quality{}) << "of a solid, other parts are dropped";
+}
+
+TEST(Judge, LooksAtAFileOfAShellThatFewSlicersOpen) {
+  ModelReport model = right_model();
+  model.bytes = 227'000'000;
+  EXPECT_EQ(judge(right_scan(), model), Quality{}) << "a solid has the triangles that it needs";
+  model.places.leaves = {{0, 0, 0}};
+  const Quality quality = judge(right_scan(), model);
+  EXPECT_EQ(quality.verdict, Verdict::look);
+  ASSERT_EQ(codes(quality), Codes{"large-file"});
+  EXPECT_EQ(quality.reasons[0].parameters, (Parameters{{"file_mb", 227.0}}));
 }
 
 TEST(Judge, AsksForMoreSnapshotsIfThereWereTwo) {
@@ -232,14 +291,10 @@ TEST(Judge, TellsOfPartsThatWereDropped) {
   const Quality dropped = judge(right_scan(), model);
   ASSERT_EQ(codes(dropped), Codes{"parts-dropped"});
   EXPECT_EQ(dropped.reasons[0].detail.find("3 parts, 15.0 cm3 in all"), 0U);
+  model.dropped.count = 400;  // of the platform's noise
+  EXPECT_EQ(judge(right_scan(), model).verdict, Verdict::good);
   model.dropped.volume = 0.001 * model.volume;  // a speck
   EXPECT_EQ(judge(right_scan(), model).verdict, Verdict::good);
-}
-
-std::shared_ptr<const SurfaceCells> surface_at(const Eigen::Vector3d& point) {
-  SurfaceCells surface;
-  surface.add(point);
-  return std::make_shared<SurfaceCells>(std::move(surface));
 }
 
 /// Adds the cells of a limb, 6 cm long and 2 cm wide, above the model.

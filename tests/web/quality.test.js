@@ -33,6 +33,15 @@ test('a reason leads to its cure', () => {
   assert.deepEqual(['turntable', 'too-low', 'alike', 'top-unseen'].map(href), ['#settings', '#build-again', '#calibrate', '#']);
 });
 
+test('a shell that is too thick or too large leads to the choice of the method', () => {
+  const reasons = [{code: 'swollen', parameters: {swelling_mm: 3.04}}, {code: 'swollen', parameters: {stray_share: 0.03}},
+    {code: 'large-file', parameters: {file_mb: 227}}].map((reason) => ({detail: '', hint: 'Build.', ...reason}));
+  const shown = verdictOf(judged('look', reasons)).reasons;
+  assert.deepEqual(shown.map(({detail}) => detail), ['The surface lies up to 3.0 mm outside of what was seen.',
+    '3.0% of the surface lies where other stops saw empty space.', 'The file has 227 MB: few slicers open it.']);
+  assert.deepEqual(new Set(shown.map(({action, hint}) => `${action.href} ${action.field} ${hint}`)), new Set(['#build-again build-methods ']));
+});
+
 test('what only a build can cure leads to the field of Build again, and the scanner’s hint is not said twice', () => {
   const hint = 'Build the model of all parts.';
   const reasons = ['cut-by-box', 'parts-dropped'].map((code) => ({code, detail: code, hint}));

@@ -20,6 +20,7 @@ const allParts = {text: text('cure.all-parts'), href: '#build-again', field: 'bu
 const again = {text: text('cure.again'), href: '#'};
 const testTurn = {text: text('cure.test-turn'), href: '#settings'};
 const lowerSpace = {text: text('cure.lower-space'), href: '#build-again', field: 'build-clip'};
+const solid = {text: text('cure.solid'), href: '#build-again', field: 'build-methods'};
 
 /** @type {Record<string, Action>} */
 const actions = {
@@ -41,10 +42,12 @@ const actions = {
   'filled-far': again,
   'parts-dropped': allParts,
   'part-missing': calibrate,
+  'swollen': solid,
+  'large-file': solid,
   'coarser': space,
 };
 
-const saidByLink = new Set(['no-map', 'parts-dropped', 'cut-by-box']);
+const saidByLink = new Set(['no-map', 'parts-dropped', 'cut-by-box', 'swollen', 'large-file']);
 
 /** What to do about a reason; nothing where the link beside it says that. @param {Reason} reason */
 const hintOf = ({code, hint}) => saidByLink.has(code ?? '') ? '' : sentence(hint);

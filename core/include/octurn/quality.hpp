@@ -32,7 +32,7 @@ std::string_view to_string(Verdict verdict);
 struct QualityReason {
   /// "empty", "too-low", "turntable", "alike", "stops-disagree", "moved", "focal-length", "optics",
   /// "floats", "sunk", "top-unseen", "little-seen", "filled-far", "hollow-filled", "cut-by-box",
-  /// "parts-dropped", "part-missing", "warm-up"
+  /// "parts-dropped", "part-missing", "swollen", "large-file", "warm-up"
   std::string code = {};
   std::string detail = {};     ///< what was found and its size, for people
   std::string hint = {};       ///< what to do about it
@@ -66,6 +66,23 @@ struct Quality {
 struct BelowBox {
   double noise_end = 0;  ///< metres above z = 0: end of the platform's noise
   double pixels = 0;     ///< mean number at a stop between there and the box's bottom
+
+  /// Whether most of an object lies there. @param inside  mean number at a stop inside the box
+  bool has_most(double inside) const;
+};
+
+/// Where stops differ: metres, object's frame.
+struct DifferingPlaces {
+  /// Surfaces whose distance is far larger than noise.
+  std::vector<Eigen::Vector3d> disagreeing = {};
+  /// Readings in free space, at the stop that has most of them.
+  std::vector<Eigen::Vector3d> contradicted = {};
+};
+
+/// How a hollow shell of leaves lies on the surface that the stops saw.
+struct ShellFigures {
+  double swelling = 0;     ///< metres: by which its outside is further out
+  double stray_share = 0;  ///< of the leaves: where stops saw free space, and none a surface
 };
 
 /// Measurements on the depth images of a scan, with the poses and the clip box of its model.
@@ -82,17 +99,15 @@ struct ScanFigures {
   /// Metres: measured z of the platform's surface; nothing if it is not seen.
   std::optional<double> platform_height = {};
   double disagreement = 0;  ///< metres: median distance between the surfaces that two stops saw
-  /// Metres, object's frame: where that distance is far larger than noise.
-  std::vector<Eigen::Vector3d> disagreeing_places = {};
   /// For each stop: the share of its readings of the object that other stops see to be free space.
   std::vector<double> contradicted = {};
-  /// Metres, object's frame: these readings, at the stop with the largest share.
-  std::vector<Eigen::Vector3d> contradicted_places = {};
+  DifferingPlaces differing = {};
   /// Metres, object's frame: centres of 5 mm cells in which several stops saw the object.
   std::vector<Eigen::Vector3d> seen = {};
   BelowBox below = {};
   /// Metres above the highest reading of the object: end of a hole in the readings, at most stops.
   double unseen_top = 0;
+  ShellFigures shell = {};
 };
 
 /// Measures the depth images of a scan while they are read for its model.
@@ -112,12 +127,18 @@ class ScanCheck {
   void add(std::size_t stop, const Snapshot& snapshot);
 
   /// Compares the stops that were added. Deterministic for any number of threads.
-  ScanFigures figures(int threads = 1) const;
+  /// @param leaves  metres, object's frame: as `ModelPlaces::leaves`, to compare with the stops
+  ScanFigures figures(int threads = 1, std::span<const Eigen::Vector3d> leaves = {}) const;
+
+  /// Metres: where the box could begin, if most of what stands on the platform is below it.
+  std::optional<double> lower_bottom() const;
 
   /// The samples that are kept of one stop.
   struct Stop;
 
  private:
+  std::vector<const Stop*> added() const;
+
   Box clip_;
   SensorTraits sensor_;
   std::vector<std::unique_ptr<Stop>> stops_;
@@ -136,12 +157,20 @@ class PoseChecks {
   void add(std::size_t stop, const Snapshot& snapshot);
 
   /// Returns the figures of each pose, with places in the object's frame.
-  std::vector<ScanFigures> figures(int threads) const;
+  /// @param leaves  as in `ScanCheck::figures`; compared with the first pose
+  std::vector<ScanFigures> figures(int threads, std::span<const Eigen::Vector3d> leaves) const;
+
+  /// As `ScanCheck::lower_bottom`; nothing for several poses.
+  std::optional<double> lower_bottom() const;
 
  private:
   std::vector<Placement> placements_;
   std::vector<std::unique_ptr<ScanCheck>> checks_;
 };
+
+/// Throws an error with this cause in place of "model-empty", if the object is below the clip box.
+/// @param error  of the model of the snapshots that were added
+void expect_higher_object(const Error& error, const PoseChecks& checks);
 
 /// Wraps a source: each snapshot that is read is also added to `checks`, which must outlive it.
 SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks);

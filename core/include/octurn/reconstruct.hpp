@@ -181,6 +181,8 @@ struct ModelPlaces {
   std::vector<Eigen::Vector3d> unseen = {};
   /// The cells of a grid that the surface passes through; null: no surface.
   std::shared_ptr<const SurfaceCells> surface = {};
+  /// Metres, object's frame: the middles of leaves all over the model; of `intersection` only.
+  std::vector<Eigen::Vector3d> leaves = {};
 };
 
 /// Connected components that were seen but left out of a model.

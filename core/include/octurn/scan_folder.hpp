@@ -203,6 +203,10 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan);
 void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved,
                        std::span<const double> slipped = {});
 
+/// Writes a clip box into `folder/scan.json`, whole or not at all. All other keys stay.
+/// @throws Error  as `read_scan` and `write_scan`
+void write_clip(const std::filesystem::path& folder, const Box& clip);
+
 /// The file of the shot with that index, such as "snapshots/000.png".
 std::string shot_file(int index);
 

@@ -88,6 +88,7 @@ void LeafFigures::add(const Octree& octree, const BrickLayers& slab) {
     octree.for_each_brick(layer, [&](const Index3& position, const Brick& brick) {
       add_leaves(position, brick);
       add_cells(position, brick);
+      add_sample(position, brick);
     });
   }
   for (int layer = first_layer(slab); layer < slab.end; ++layer) {
@@ -151,6 +152,41 @@ void LeafFigures::add_cells(const Index3& position, const Brick& brick) {
       }
     }
   }
+}
+
+/// Adds a brick's leaves whose number is a multiple of the step.
+void LeafFigures::add_sample(const Index3& position, const Brick& brick) {
+  for (std::size_t z = 0; z < Brick::side; ++z) {
+    const std::uint64_t first = passed_;
+    passed_ += static_cast<std::uint64_t>(std::popcount(brick.layers[z]));
+    const std::uint64_t next = (first + sample_step_ - 1) / sample_step_ * sample_step_;
+    std::uint64_t leaves = next < passed_ ? brick.layers[z] : 0;
+    for (std::uint64_t number = first; leaves != 0; ++number, leaves &= leaves - 1) {
+      if (number % sample_step_ == 0) {
+        const int bit = std::countr_zero(leaves);
+        sample_.push_back({.x = Brick::side * position.x + bit % Brick::side,
+                           .y = Brick::side * position.y + bit / Brick::side,
+                           .z = Brick::side * position.z + static_cast<int>(z)});
+      }
+      if (sample_.size() > max_sample) {  // keeps every other one, the first among them
+        std::size_t kept = 0;
+        for (std::size_t i = 0; i < sample_.size(); i += 2) {
+          sample_[kept++] = sample_[i];
+        }
+        sample_.resize(kept);
+        sample_step_ *= 2;
+      }
+    }
+  }
+}
+
+std::vector<Eigen::Vector3d> LeafFigures::sample() const {
+  const Eigen::Vector3d low(low_xy_, low_xy_, 0);
+  std::vector<Eigen::Vector3d> middles;
+  for (const Index3& leaf : sample_) {
+    middles.push_back(low + leaf_side_ * Eigen::Vector3d(leaf.x + 0.5, leaf.y + 0.5, leaf.z + 0.5));
+  }
+  return middles;
 }
 
 void LeafFigures::add_sides(const PseudoVoxelBrick& brick) {

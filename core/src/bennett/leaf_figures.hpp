@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <vector>
 
 #include "bennett/pseudo_voxels.hpp"
 #include "mesh/surface_cells.hpp"
@@ -36,10 +37,16 @@ class LeafFigures {
 
   const SurfaceCells& surface() const { return surface_; }
 
+  /// Metres: the middles of every n-th leaf, at most `max_sample`, layer by layer.
+  std::vector<Eigen::Vector3d> sample() const;
+
+  static constexpr std::size_t max_sample = 1024;
+
  private:
   void add_leaves(const Index3& position, const Brick& brick);
   void add_cells(const Index3& position, const Brick& brick);
   void add_sides(const PseudoVoxelBrick& brick);
+  void add_sample(const Index3& position, const Brick& brick);
 
   double low_xy_;     // metres
   double leaf_side_;  // metres
@@ -50,6 +57,9 @@ class LeafFigures {
   std::array<int, 3> min_ = {};  // lowest leaf on each axis
   std::array<int, 3> end_ = {};  // one past the highest
   SurfaceCells surface_ = {};
+  std::uint64_t passed_ = 0;       // leaves of which `sample_` is
+  std::uint64_t sample_step_ = 1;  // doubles when there are more than `max_sample`
+  std::vector<Index3> sample_ = {};
 };
 
 }  // namespace octurn

@@ -71,13 +71,17 @@ struct ScanCheck::Stop {
 struct StopComparison {
   double disagreement = 0;  ///< metres: the median of the distances
   /// As in `ScanFigures`.
-  std::vector<Eigen::Vector3d> disagreeing_places = {};
   std::vector<double> contradicted = {};
-  std::vector<Eigen::Vector3d> contradicted_places = {};
+  DifferingPlaces differing = {};
 };
 
 /// Compares each stop's readings of the object with the surfaces that neighbouring stops saw.
 StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops,
                              const SensorTraits& sensor, int threads);
+
+/// Compares leaves of a hollow shell with the surfaces that the stops saw.
+/// @param leaves  metres, object's frame
+ShellFigures compare_shell(const std::vector<const ScanCheck::Stop*>& stops,
+                           std::span<const Eigen::Vector3d> leaves);
 
 }  // namespace octurn

@@ -119,14 +119,64 @@ StopComparison compare_stops(const std::vector<const ScanCheck::Stop*>& stops,
                                static_cast<double>(std::max<std::size_t>(stop.readings, 1)));
   }
   all.disagreement = median(std::move(distances));
-  all.disagreeing_places = disagreeing.centres();
+  all.differing.disagreeing = disagreeing.centres();
   const auto odd = std::ranges::max_element(all.contradicted) - all.contradicted.begin();
   Places contradicted;
   for (const Vector3d& point : of_stops[static_cast<std::size_t>(odd)].contradicted) {
     contradicted.add(point);
   }
-  all.contradicted_places = contradicted.centres();
+  all.differing.contradicted = contradicted.centres();
   return all;
+}
+
+namespace {
+
+constexpr std::size_t min_surfaces = 2;  // that stops saw at a leaf
+constexpr double swelling_share = 0.95;  // of the leaves are less far outside
+constexpr std::size_t min_leaves = 64;
+
+/// What the stops saw at a leaf.
+struct SeenLeaf {
+  std::vector<double> distances = {};  // metres: of the leaf outside of a stop's surface
+  bool is_confirmed = false;
+  bool is_contradicted = false;
+};
+
+SeenLeaf look_at_leaf(const std::vector<const ScanCheck::Stop*>& stops, const Vector3d& leaf) {
+  SeenLeaf seen;
+  for (const ScanCheck::Stop* stop : stops) {
+    const Vector3d point = stop->object_from_sensor.inverse() * leaf;
+    const auto surface = stop->view.look_up(point);
+    const double distance = surface ? surface->normal.dot(point - surface->point) : 0;
+    if (surface && std::abs(distance) < max_surface_distance) {
+      seen.distances.push_back(distance);
+      seen.is_confirmed |= std::abs(distance) < confirming_distance;
+    }
+    seen.is_contradicted |= stop->empty_depth(point) > point.z() + max_surface_distance;
+  }
+  return seen;
+}
+
+}  // namespace
+
+ShellFigures compare_shell(const std::vector<const ScanCheck::Stop*>& stops,
+                           std::span<const Vector3d> leaves) {
+  std::vector<double> outside;
+  std::size_t stray = 0;
+  for (const Vector3d& leaf : leaves) {
+    SeenLeaf seen = look_at_leaf(stops, leaf);
+    if (seen.distances.size() >= min_surfaces) {
+      outside.push_back(median(std::move(seen.distances)));
+    }
+    stray += seen.is_contradicted && !seen.is_confirmed ? 1U : 0U;
+  }
+  if (outside.size() < min_leaves) {
+    return {};
+  }
+  std::ranges::sort(outside);
+  const auto count = static_cast<double>(outside.size());
+  return {.swelling = outside[static_cast<std::size_t>(swelling_share * count)],
+          .stray_share = static_cast<double>(stray) / static_cast<double>(leaves.size())};
 }
 
 }  // namespace octurn

@@ -19,12 +19,6 @@ constexpr double voxels_of_gap = 2;   // lost by carving and simplification
 constexpr std::size_t min_cells = 6;  // 1.5 cm2: fewer are readings between two surfaces
 constexpr double min_length = 0.012;  // metres
 
-/// Metres, a voxel's side. @return 0 for a model without any
-double voxel_side(const ModelReport& model) {
-  return model.leaves == 0 ? 0
-                           : std::cbrt(std::abs(model.volume) / static_cast<double>(model.leaves));
-}
-
 /// Cells without any surface near.
 std::set<ObjectCell> find_bare_cells(const ScanFigures& scan, const ModelReport& model) {
   const double scale = std::pow(std::max(scan.distance / scan.sensor.noise_distance, 1.0), 2);
@@ -71,6 +65,11 @@ MissingPart measure(const std::vector<ObjectCell>& cluster) {
 }
 
 }  // namespace
+
+double voxel_side(const ModelReport& model) {
+  return model.leaves == 0 ? 0
+                           : std::cbrt(std::abs(model.volume) / static_cast<double>(model.leaves));
+}
 
 std::optional<MissingPart> find_missing_part(const ScanFigures& scan, const ModelReport& model) {
   std::set<ObjectCell> bare = find_bare_cells(scan, model);

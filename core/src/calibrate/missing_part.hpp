@@ -18,4 +18,7 @@ struct MissingPart {
 /// size of the model are not missing, and specks do not count.
 std::optional<MissingPart> find_missing_part(const ScanFigures& scan, const ModelReport& model);
 
+/// Metres, the side of a model's voxels or leaves. @return 0 for a model without any
+double voxel_side(const ModelReport& model);
+
 }  // namespace octurn

@@ -17,6 +17,7 @@ using Stops = std::vector<const ScanCheck::Stop*>;
 constexpr std::size_t height_window = 5;  // steps of height that a platform's readings spread over
 constexpr std::size_t min_platform_readings = 500;  // at a stop
 constexpr double noise_share = 0.01;                // of the readings at the platform's height
+constexpr double bottom_step = 0.0001;              // metres
 constexpr double share_without_hole = 0.2;          // of the stops
 
 /// The largest angle between neighbouring stops, radians, from the sensor's headings in the
@@ -73,8 +74,8 @@ std::optional<double> find_platform(const std::vector<std::size_t>& counts, std:
 /// platform as below it, where nothing else is.
 /// @param platform  metres
 /// @param bottom    metres, of the box
-void find_low_object(const std::vector<std::size_t>& counts, double platform, double bottom,
-                     ScanFigures& figures) {
+BelowBox find_low_object(const std::vector<std::size_t>& counts, double platform, double bottom,
+                         std::size_t stops) {
   constexpr double step = ScanCheck::Stop::height_step;
   const auto index = [](double height) {
     return static_cast<std::ptrdiff_t>(std::floor((height + ScanCheck::Stop::highest) / step));
@@ -93,9 +94,9 @@ void find_low_object(const std::vector<std::size_t>& counts, double platform, do
   for (std::ptrdiff_t by = end; middle + by < index(bottom); ++by) {
     above += at(middle + by) - at(middle - by);
   }
-  figures.below.noise_end = platform + static_cast<double>(end) * step;
-  figures.below.pixels = std::max(above, 0.0) * ScanCheck::Stop::thinning *
-                         ScanCheck::Stop::thinning / static_cast<double>(figures.stops);
+  return {.noise_end = platform + static_cast<double>(end) * step,
+          .pixels = std::max(above, 0.0) * ScanCheck::Stop::thinning * ScanCheck::Stop::thinning /
+                    static_cast<double>(stops)};
 }
 
 /// The hole above the object's highest readings at most stops, metres.
@@ -128,13 +129,38 @@ void ScanCheck::add(std::size_t stop, const Snapshot& snapshot) {
   stops_[stop] = std::make_unique<Stop>(snapshot, clip_);
 }
 
-ScanFigures ScanCheck::figures(int threads) const {
+std::vector<const ScanCheck::Stop*> ScanCheck::added() const {
   Stops stops;
   for (const auto& stop : stops_) {
     if (stop) {
       stops.push_back(stop.get());
     }
   }
+  return stops;
+}
+
+std::optional<double> ScanCheck::lower_bottom() const {
+  const Stops stops = added();
+  if (stops.empty()) {
+    return std::nullopt;
+  }
+  const std::vector<std::size_t> heights = sum_heights(stops);
+  const std::optional<double> platform = find_platform(heights, stops.size());
+  if (!platform) {
+    return std::nullopt;
+  }
+  double inside = 0;
+  for (const Stop* stop : stops) {
+    inside += static_cast<double>(stop->object_pixels) / static_cast<double>(stops.size());
+  }
+  const BelowBox below = find_low_object(heights, *platform, clip_.min.z(), stops.size());
+  // A model merges the readings of many stops: its noise ends at less than half of their height.
+  const double bottom = std::ceil(below.noise_end / 2 / bottom_step) * bottom_step;
+  return below.has_most(inside) && bottom < clip_.min.z() ? std::optional(bottom) : std::nullopt;
+}
+
+ScanFigures ScanCheck::figures(int threads, std::span<const Eigen::Vector3d> leaves) const {
+  const Stops stops = added();
   ScanFigures figures{.sensor = sensor_, .stops = stops.size()};
   if (stops.empty()) {
     return figures;
@@ -159,15 +185,15 @@ ScanFigures ScanCheck::figures(int threads) const {
   const std::vector<std::size_t> heights = sum_heights(stops);
   figures.platform_height = find_platform(heights, stops.size());
   if (figures.platform_height) {
-    find_low_object(heights, *figures.platform_height, clip_.min.z(), figures);
+    figures.below = find_low_object(heights, *figures.platform_height, clip_.min.z(), stops.size());
   }
   figures.unseen_top = find_unseen_top(stops);
   figures.seen = find_seen(stops);
+  figures.shell = compare_shell(stops, leaves);
   StopComparison comparison = compare_stops(stops, sensor_, threads);
   figures.disagreement = comparison.disagreement;
-  figures.disagreeing_places = std::move(comparison.disagreeing_places);
   figures.contradicted = std::move(comparison.contradicted);
-  figures.contradicted_places = std::move(comparison.contradicted_places);
+  figures.differing = std::move(comparison.differing);
   return figures;
 }
 
@@ -194,22 +220,28 @@ void PoseChecks::add(std::size_t stop, const Snapshot& snapshot) {
   checks_[pose]->add(stop, seen);
 }
 
-std::vector<ScanFigures> PoseChecks::figures(int threads) const {
+std::vector<ScanFigures> PoseChecks::figures(int threads,
+                                             std::span<const Eigen::Vector3d> leaves) const {
   std::vector<ScanFigures> all;
   for (std::size_t pose = 0; pose < checks_.size(); ++pose) {
-    ScanFigures figures = checks_[pose]->figures(threads);
+    ScanFigures figures =
+        checks_[pose]->figures(threads, pose == 0 ? leaves : std::span<const Eigen::Vector3d>());
     const auto move = [&](std::vector<Eigen::Vector3d>& places) {
       for (Eigen::Vector3d& place : places) {
         place = placements_[pose].object_from_platform * place;
       }
     };
     std::ranges::for_each(figures.cut_places, move);
-    move(figures.disagreeing_places);
-    move(figures.contradicted_places);
+    move(figures.differing.disagreeing);
+    move(figures.differing.contradicted);
     move(figures.seen);
     all.push_back(std::move(figures));
   }
   return all;
+}
+
+std::optional<double> PoseChecks::lower_bottom() const {
+  return checks_.size() == 1 ? checks_.front()->lower_bottom() : std::nullopt;
 }
 
 SnapshotSource checked_snapshots(SnapshotSource snapshots, PoseChecks& checks) {

@@ -255,11 +255,20 @@ void write_scan(const std::filesystem::path& folder, const Scan& scan) {
   write_document(folder, document);
 }
 
-void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved,
-                       std::span<const double> slipped) {
+namespace {
+
+/// The document of a scan. @throws Error  as `read_scan`
+json scan_document(const std::filesystem::path& folder) {
   const std::string text = read_scan_file(folder / "scan.json");
   parse_scan(text);  // refuses a file that is not a scan
-  json document = parse_json(text, ErrorCode::scan_malformed, "scan.json");
+  return parse_json(text, ErrorCode::scan_malformed, "scan.json");
+}
+
+}  // namespace
+
+void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& solved,
+                       std::span<const double> slipped) {
+  json document = scan_document(folder);
   document["calibration"]["solved"] = to_json(solved);
   json& shots = document["snapshots"];
   for (std::size_t i = 0; i < shots.size(); ++i) {
@@ -269,6 +278,12 @@ void write_solved_pose(const std::filesystem::path& folder, const SolvedPose& so
       shots[i].erase("slipped_deg");
     }
   }
+  write_document(folder, document);
+}
+
+void write_clip(const std::filesystem::path& folder, const Box& clip) {
+  json document = scan_document(folder);
+  document["clip_m"] = to_json(clip);
   write_document(folder, document);
 }
 

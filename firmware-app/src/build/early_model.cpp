@@ -67,6 +67,11 @@ void FittingReconstruction::start_again() {
   reconstruction_ = make_reconstructor(options_);
 }
 
+void FittingReconstruction::start_again(const Box& clip) {
+  options_.clip = clip;
+  start_again();
+}
+
 void FittingReconstruction::make_coarser(const Error& error) {
   if (error.code() != ErrorCode::memory_limit || 2 * options_.leaf_size > options_.root_size) {
     throw error;

@@ -63,6 +63,9 @@ class FittingReconstruction {
   /// Restarts the reconstruction without snapshots.
   void start_again();
 
+  /// Restarts it with another clip box.
+  void start_again(const Box& clip);
+
   /// Restarts one level coarser after an error "memory-limit".
   /// @throws Error  `error` if it is another one, or the leaves cannot grow
   void make_coarser(const Error& error);

@@ -24,6 +24,8 @@ struct ScanObserver {
       [](const Reconstructor&, int) {};
   /// After the pose, and lasers' planes, were solved or refused, before the result is used.
   std::function<void(const ScanSolution& solution)> on_calibrated = [](const ScanSolution&) {};
+  /// After the clip box was lowered to that height, metres, since the object was below it.
+  std::function<void(double bottom)> on_lowered = [](double) {};
   /// Repeatedly while the model is built again, with the number of snapshots added.
   std::function<void(int snapshots)> on_rebuilt = [](int) {};
   /// Repeatedly while the scan waits for a snapshot to be added.

@@ -24,7 +24,7 @@ constexpr int max_stale_frames = 30;
 constexpr int max_attempts = 4;       // at a stop to which steps are lost
 constexpr int max_lost_periods = 4;   // on the way to a stop
 constexpr double slower = 0.7;        // the pace after lost steps: half of the torque
-constexpr double clear_share = 0.8;   // of the counted angle's misfit: another one explains it
+constexpr double clear_share = 0.8;   // of every other angle's misfit
 constexpr double min_period_deg = 1;  // what the images of two stops can tell
 constexpr double max_turn_deg = 30;   // between stops: further on, they share too little
 
@@ -152,23 +152,27 @@ struct TwoStops {
 };
 
 /// The turns that the platform may have made: by up to `max_lost_periods` less or more than
-/// counted.
+/// counted. The last one is none at all.
 std::vector<double> possible_degs(const TwoStops& stops) {
   std::vector<double> degs;
   for (int lag = -max_lost_periods; lag <= max_lost_periods; ++lag) {
     degs.push_back(stops.turned_deg - lag * stops.period_deg);
   }
+  degs.push_back(0);
   return degs;
 }
 
 /// How many periods the platform lags behind its count since the last stop, by the misfits of the
-/// possible turns: 0 unless one explains the images clearly better than the count.
+/// possible turns: 0 unless one explains the images clearly better than all others. Images of an
+/// object of revolution show no turn.
 std::int64_t clear_lag(const std::vector<double>& misfits) {
   if (misfits.empty()) {
     return 0;
   }
   const auto best = std::ranges::min_element(misfits);
-  return *best < clear_share * misfits[max_lost_periods]
+  const auto others =
+      std::ranges::count_if(misfits, [&](double misfit) { return *best < clear_share * misfit; });
+  return others + 1 == std::ssize(misfits) && best + 1 != misfits.end()
              ? std::distance(misfits.begin(), best) - max_lost_periods
              : 0;
 }

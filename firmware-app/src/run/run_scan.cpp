@@ -65,6 +65,7 @@ class Run {
   void solve_for_preview(const Scan& so_far);
   void add_stored();
   void rebuild();
+  bool lower_space();
   template <typename Tell>
   bool wait_for_added(Tell tell);
   template <typename Add>
@@ -209,6 +210,24 @@ void Run::rebuild() {
   observer_.on_rebuilt(done());
 }
 
+/// Lowers the space to the end of the platform's noise, if the object is mostly below it and nobody
+/// chose where it begins. The model then has to be built again.
+bool Run::lower_space() {
+  const bool is_chosen = reconstruction_.options().clip.min.z() != ScanSettings{}.clip.min.z();
+  const auto bottom = is_chosen ? std::nullopt : check_.lower_bottom();
+  if (!bottom) {
+    return false;
+  }
+  early_.give_up();
+  scan_.clip.min.z() = *bottom;
+  write_clip(folder_, scan_.clip);
+  observer_.on_lowered(*bottom);
+  reconstruction_.start_again(scan_.clip);
+  check_ = PoseChecks({}, scan_.clip, scan_.shots.size(), sensor_traits(scan_));
+  added_ = 0;
+  return true;
+}
+
 /// @param tell  called every `wait_interval`
 /// @return false if memory was exceeded: the reconstruction is then coarser, and empty
 template <typename Tell>
@@ -264,12 +283,16 @@ std::optional<ModelReport> Run::write() {
     if (stop_.stop_requested()) {
       return std::nullopt;  // not all snapshots were added
     }
+    if (lower_space()) {
+      continue;
+    }
     try {
       return early_.has_begun()
                  ? early_.finish(stop_)
                  : write_model(*reconstruction_, readable_snapshots(folder_, scan_, stop_),
                                folder_ / "Scan.stl", stop_);
     } catch (const Error& error) {
+      expect_higher_object(error, check_);
       reconstruction_.make_coarser(error);
       added_ = 0;
     }

@@ -360,6 +360,7 @@ ScanObserver Worker::observer(const std::stop_token& stop) {
                 }
               },
           .on_calibrated = [this](const ScanSolution& solution) { keep_calibration(solution); },
+          .on_lowered = [this](double bottom) { job_.settings.clip.min.z() = bottom; },
           .on_rebuilt = [this](int snapshots) { show_rebuilt(snapshots); },
           .on_wait = [this] { ports_.heartbeat.beat(); }};
 }

@@ -2,7 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <bit>
 #include <span>
 #include <vector>
 
@@ -128,6 +130,25 @@ TEST(LeafFigures, HaveTheSurfaceOfFineLeavesInFewCells) {
     EXPECT_TRUE(figures.surface().has_near(leaf, Brick::side * octree.leaf_side()));
   }
   EXPECT_FALSE(figures.surface().has_near({0, -0.01, 0.07}, 0.005));
+}
+
+TEST(LeafFigures, SampleLeavesEvenlyAndInAnySlabsTheSame) {
+  const Octree octree = leaves();
+  const std::vector<Vector3d> sample = figures_of(octree).sample();
+  EXPECT_GT(sample.size(), LeafFigures::max_sample / 2);
+  EXPECT_LE(sample.size(), LeafFigures::max_sample);
+  EXPECT_EQ(figures_of(octree, {{0, 1}, {1, 4}, {4, 5}, {5, 8}}).sample(), sample);
+  double high = 0;
+  octree.for_each_brick([&](const Index3& brick, const Brick& bits) {
+    for (int z = 0; z < Brick::side; ++z) {
+      const bool is_high = Brick::side * brick.z + z >= 20;  // above the ball's middle
+      high += is_high ? std::popcount(bits.layers[static_cast<std::size_t>(z)]) : 0;
+    }
+  });
+  const auto sampled = static_cast<double>(std::ranges::count_if(
+      sample, [&](const Vector3d& leaf) { return leaf.z() > 20 * octree.leaf_side(); }));
+  EXPECT_NEAR(sampled / static_cast<double>(sample.size()),
+              high / static_cast<double>(octree.leaf_count()), 0.02);
 }
 
 TEST(LeafFigures, OfNothingAreNotClosed) {

@@ -51,7 +51,7 @@ TEST(ScanCheck, SeesThatStopsDisagreeWithARigTwoDegreesOff) {
   // apart.
   EXPECT_GT(figures(turn).disagreement, 2 * right);
   EXPECT_GT(figures(turn).disagreement, 0.0011);
-  EXPECT_FALSE(figures(turn).disagreeing_places.empty());
+  EXPECT_FALSE(figures(turn).differing.disagreeing.empty());
 }
 
 TEST(ScanCheck, MeasuresHowFarThePlatformIsFromWhereItShouldBe) {
@@ -110,8 +110,8 @@ TEST(ScanCheck, FindsTheStopAtWhichAHandWasInThePicture) {
   const auto& contradicted = scan.contradicted;
   EXPECT_EQ(std::ranges::max_element(contradicted) - contradicted.begin(), 3);
   EXPECT_GT(contradicted[3], 0.1);
-  ASSERT_FALSE(scan.contradicted_places.empty());
-  for (const Eigen::Vector3d& place : scan.contradicted_places) {
+  ASSERT_FALSE(scan.differing.contradicted.empty());
+  for (const Eigen::Vector3d& place : scan.differing.contradicted) {
     // The ball's radius, half a cell's diagonal, and the noise.
     EXPECT_LT((place - Eigen::Vector3d(-0.075, 0.075, 0.05)).norm(), 0.03 + 0.0035 + 0.002);
   }
@@ -151,6 +151,62 @@ TEST(ScanCheck, CountsWhatLiesBetweenThePlatformsNoiseAndTheBox) {
   EXPECT_LT(tile.below.noise_end, 0.004);
   const Shape nothing = [](const Eigen::Vector3d&) { return 1.0; };
   EXPECT_LT(figures(rendered_turn(nothing, 6), high).below.pixels, 60);
+}
+
+TEST(ScanCheck, LowersTheBoxOnlyForWhatIsMostlyBelowIt) {
+  const Box high{.min = {-0.14, -0.14, 0.005}, .max = roomy.max};
+  const auto bottom = [&](const Shape& object) {
+    const CalibrationTurn turn = rendered_turn(object, 6);
+    ScanCheck check(high, turn.angles.size());
+    for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
+      check.add(stop, {.frame = turn.read(stop),
+                       .intrinsics = turn.intrinsics,
+                       .object_from_sensor =
+                           object_from_sensor(turn.platform_from_sensor, turn.angles[stop])});
+    }
+    return check.lower_bottom();
+  };
+  const auto below_tile = bottom(block({0.08, 0.08, 0.004}));
+  ASSERT_TRUE(below_tile);
+  EXPECT_GT(*below_tile, 0.001);
+  EXPECT_LT(*below_tile, 0.004);
+  EXPECT_TRUE(bottom(block({0.03, 0.03, 0.003}))) << "as small as a coin";
+  EXPECT_FALSE(bottom(joined(block({0.08, 0.08, 0.004}), block({0.06, 0.06, 0.06}))));
+  EXPECT_FALSE(bottom([](const Eigen::Vector3d&) { return 1.0; })) << "an empty platform";
+}
+
+/// The middles of leaves on a ball that rests 1 cm above the platform, in the sensor's view.
+std::vector<Eigen::Vector3d> leaves_around(double radius, double excess) {
+  std::vector<Eigen::Vector3d> leaves;
+  for (int i = 0; i < 400; ++i) {
+    const double z = 1 - (i + 0.5) / 400;  // the upper half
+    const double angle = 2.4 * i;
+    const Eigen::Vector3d out(std::sqrt(1 - z * z) * std::cos(angle),
+                              std::sqrt(1 - z * z) * std::sin(angle), z);
+    leaves.emplace_back(Eigen::Vector3d(0, 0, 0.06) + (radius + excess) * out);
+  }
+  return leaves;
+}
+
+TEST(ScanCheck, MeasuresHowFarAShellIsOutsideOfWhatTheStopsSaw) {
+  const CalibrationTurn turn = rendered_turn(ball({0, 0, 0.06}, 0.05), 12);
+  ScanCheck check(roomy, turn.angles.size());
+  for (std::size_t stop = 0; stop < turn.angles.size(); ++stop) {
+    check.add(stop, {.frame = turn.read(stop),
+                     .intrinsics = turn.intrinsics,
+                     .object_from_sensor =
+                         object_from_sensor(turn.platform_from_sensor, turn.angles[stop])});
+  }
+  // The stops' noise, 0.4 mm in each, is in the outermost twentieth of the leaves.
+  EXPECT_NEAR(check.figures(1, leaves_around(0.05, 0)).shell.swelling, 0.0003, 0.0003);
+  EXPECT_NEAR(check.figures(1, leaves_around(0.05, 0.003)).shell.swelling, 0.0033, 0.0003);
+  EXPECT_EQ(check.figures(1, leaves_around(0.05, 0.003)).shell.stray_share, 0);
+  std::vector<Eigen::Vector3d> stray = leaves_around(0.05, 0);
+  for (int i = 0; i < 20; ++i) {  // an arc in the air
+    stray[static_cast<std::size_t>(20 * i)] = {0.1 * std::cos(0.3 * i), 0.1 * std::sin(0.3 * i),
+                                               0.1};
+  }
+  EXPECT_NEAR(check.figures(1, stray).shell.stray_share, 0.05, 0.005);
 }
 
 TEST(ScanCheck, KeepsWhereSeveralStopsSawTheObject) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <iterator>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,10 +22,13 @@ using Clock = std::chrono::steady_clock;
 // Maximum number of buffered frames from before the end of a move: a second of them, at 30 Hz.
 constexpr int max_stale_frames = 30;
 
-constexpr int max_attempts = 4;       // at a stop to which steps are lost
-constexpr int max_lost_periods = 4;   // on the way to a stop
-constexpr double slower = 0.7;        // the pace after lost steps: half of the torque
-constexpr double clear_share = 0.8;   // of every other angle's misfit
+constexpr int max_attempts = 4;      // at a stop to which steps are lost
+constexpr int max_lost_periods = 4;  // on the way to a stop
+constexpr double slower = 0.7;       // the pace after lost steps: half of the torque
+constexpr double clear_share = 0.8;  // of every other angle's misfit
+// Of the counted angle's misfit, by no turn at all: 0.01 of a platform that stood still, 0.13 of a
+// cup that turned.
+constexpr double still_share = 0.05;
 constexpr double min_period_deg = 1;  // what the images of two stops can tell
 constexpr double max_turn_deg = 30;   // between stops: further on, they share too little
 
@@ -163,18 +167,23 @@ std::vector<double> possible_degs(const TwoStops& stops) {
 }
 
 /// How many periods the platform lags behind its count since the last stop, by the misfits of the
-/// possible turns: 0 unless one explains the images clearly better than all others. Images of an
-/// object of revolution show no turn.
-std::int64_t clear_lag(const std::vector<double>& misfits) {
+/// possible turns: 0 unless one explains the images clearly better than all others. Those of an
+/// object of revolution fit no turn best, too, but not as well as those of a platform that stood
+/// still.
+std::int64_t clear_lag(std::span<const double> misfits) {
   if (misfits.empty()) {
     return 0;
   }
-  const auto best = std::ranges::min_element(misfits);
-  const auto others =
-      std::ranges::count_if(misfits, [&](double misfit) { return *best < clear_share * misfit; });
-  return others + 1 == std::ssize(misfits) && best + 1 != misfits.end()
-             ? std::distance(misfits.begin(), best) - max_lost_periods
-             : 0;
+  const double counted = misfits[max_lost_periods];
+  const double still = misfits.back();
+  const auto lags = misfits.first(misfits.size() - 1);
+  const auto best = std::ranges::min_element(lags);
+  const bool is_clear = std::ranges::all_of(lags, [&](const double& misfit) {
+    return &misfit == &*best || *best < clear_share * misfit;
+  });
+  const bool is_moving = is_clear && *best < clear_share * still;
+  const bool is_still = still < still_share * counted && *best < clear_share * counted;
+  return is_moving || is_still ? std::distance(lags.begin(), best) - max_lost_periods : 0;
 }
 
 /// Whether the images may show lost steps. A wrong pose alone makes it seem so, too.

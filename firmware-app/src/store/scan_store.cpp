@@ -397,8 +397,8 @@ void ScanStore::recover() {
   }
 }
 
-/// `writing_` is held. The scan leaves the list before its folder does: a request that misses a file
-/// then finds that there is no such scan.
+/// `writing_` is held. The scan leaves the list before its folder does: a request that misses a
+/// file then finds that there is no such scan.
 void ScanStore::move_to_bin(const Job& job) {
   const auto list = [&](bool is_listed) {
     const std::lock_guard lock(mutex_);

@@ -182,7 +182,7 @@ function listen(actions) {
     const what = event.target.closest('[data-do]')?.dataset.do;
     const number = Number(event.target.closest('.build').dataset.key);
     if (what === 'show' || what === 'choose' || what === 'remove') {
-      isTouched = false;  // the form follows the model that this brings into view
+      [filledWith, isTouched] = ['', false];  // the form follows the model that this brings into view
       actions[what](number);
     }
   });

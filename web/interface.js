@@ -1,7 +1,7 @@
 // Shows openapi.json as a page for programmers.
 
 import {copyOf, element, part, setText, show} from './base/dom.js';
-import {answersOf, bodyOf, operationsOf, typeText} from './openapi.js';
+import {answersOf, bodyOf, operationsOf, typeText} from './api/openapi.js';
 
 /** @param {Element} list @param {string} term @param {string} text */
 function addRow(list, term, text) {
@@ -12,7 +12,7 @@ function addRow(list, term, text) {
   list.append(name, value);
 }
 
-/** @param {import('./openapi.js').Operation} operation */
+/** @param {import('./api/openapi.js').Operation} operation */
 function operationItem({method, path, summary, description, operation}) {
   const item = copyOf('operation');
   const name = part(item, '.method');

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {answersOf, bodyOf, operationsOf, typeText} from '../../web/openapi.js';
+import {answersOf, bodyOf, operationsOf, typeText} from '../../web/api/openapi.js';
 
 const scan = {$ref: '#/components/schemas/Scan'};
 

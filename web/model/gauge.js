@@ -2,6 +2,7 @@
 // noise. Pure; millimetres.
 
 import {faceNormals, lengthsOf} from './normals.js';
+import {dot} from './section.js';
 
 /** @typedef {{area: number, normal: number[], middle: number[]}} Facet */
 
@@ -33,9 +34,6 @@ function medianOf(facets, of) {
   let below = areaOf(sorted) / 2;
   return sorted.find(({area}) => (below -= area) <= 0)?.value ?? NaN;
 }
-
-/** @param {number[]} a @param {number[]} b */
-const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 
 /**
  * The longer and the shorter side of a block that stands on the platform, and its height.

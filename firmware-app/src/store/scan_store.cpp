@@ -397,23 +397,25 @@ void ScanStore::recover() {
   }
 }
 
+/// `writing_` is held.
+void ScanStore::list(const Job& job) {
+  const std::lock_guard lock(mutex_);
+  jobs_.insert_or_assign(job.id, job);
+  ++revision_;
+}
+
 /// `writing_` is held. The scan leaves the list before its folder does: a request that misses a
 /// file then finds that there is no such scan.
 void ScanStore::move_to_bin(const Job& job) {
-  const auto list = [&](bool is_listed) {
+  {
     const std::lock_guard lock(mutex_);
-    if (is_listed) {
-      jobs_.insert_or_assign(job.id, job);
-    } else {
-      jobs_.erase(job.id);
-    }
+    jobs_.erase(job.id);
     ++revision_;
-  };
-  list(false);
+  }
   try {
     bin_.take(folder(job.id), job, now(), clock_.is_right());
   } catch (...) {
-    list(true);
+    list(job);
     throw;
   }
 }
@@ -421,9 +423,7 @@ void ScanStore::move_to_bin(const Job& job) {
 /// `writing_` is held.
 void ScanStore::move_from_bin(const BinnedScan& scan) {
   bin_.put_back(scan.job.id, folder(scan.job.id));
-  const std::lock_guard lock(mutex_);
-  jobs_.insert_or_assign(scan.job.id, scan.job);
-  ++revision_;
+  list(scan.job);
 }
 
 /// Moves the scan before its poses, so that `finish_discards` can complete a move that a power cut

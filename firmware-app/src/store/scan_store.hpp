@@ -184,6 +184,7 @@ class ScanStore {
   void finish_discards();
   ScanTime now() const;
   void expire_bin();
+  void list(const Job& job);
   void move_from_bin(const BinnedScan& scan);
   void restore_with_poses(const BinnedScan& first);
   void move_builds_out(const Job& first, const std::string& pose);

@@ -178,10 +178,10 @@ std::int64_t clear_lag(std::span<const double> misfits) {
   const double still = misfits.back();
   const auto lags = misfits.first(misfits.size() - 1);
   const auto best = std::ranges::min_element(lags);
-  const bool is_clear = std::ranges::all_of(lags, [&](const double& misfit) {
-    return &misfit == &*best || *best < clear_share * misfit;
-  });
-  const bool is_moving = is_clear && *best < clear_share * still;
+  // Of no turn and every other lag: all but the best itself.
+  const auto worse =
+      std::ranges::count_if(misfits, [&](double misfit) { return *best < clear_share * misfit; });
+  const bool is_moving = worse + 1 == std::ssize(misfits);
   const bool is_still = still < still_share * counted && *best < clear_share * counted;
   return is_moving || is_still ? std::distance(lags.begin(), best) - max_lost_periods : 0;
 }

@@ -394,8 +394,7 @@ void judge_shell(Judgement& judgement, const ScanFigures& scan, const ModelRepor
   if (model.places.leaves.empty()) {
     return;
   }
-  const double noise = std::pow(std::max(scan.distance / scan.sensor.noise_distance, 1.0), 2);
-  if (scan.shell.swelling > max_swelling * noise + voxel_side(model)) {
+  if (scan.shell.swelling > max_swelling * scan.noise_growth() + voxel_side(model)) {
     judgement.add(Verdict::look,
                   {.code = "swollen",
                    .detail = "the surface lies up to " + mm_text(scan.shell.swelling, text_digits) +
@@ -428,13 +427,14 @@ void judge_shell(Judgement& judgement, const ScanFigures& scan, const ModelRepor
 
 /// Reports an object that lies between the platform's noise and the box.
 void judge_low(Judgement& judgement, const ScanFigures& scan) {
-  judgement.add(Verdict::bad,
-                {.code = "too-low",
-                 .detail = "what lies on the platform is lower than the scanned space, which could "
-                           "begin " +
-                           mm_text(scan.below.noise_end / 2, text_digits) + " above the platform",
-                 .hint = "Build the model again with a scanned space that begins lower.",
-                 .parameters = {{"noise_end_mm", mm_from_metres(scan.below.noise_end / 2)}}});
+  judgement.add(
+      Verdict::bad,
+      {.code = "too-low",
+       .detail = "what lies on the platform is lower than the scanned space, which could "
+                 "begin " +
+                 mm_text(scan.below.possible_bottom(), text_digits) + " above the platform",
+       .hint = "Build the model again with a scanned space that begins lower.",
+       .parameters = {{"noise_end_mm", mm_from_metres(scan.below.possible_bottom())}}});
 }
 
 /// Judges another pose of a model. Filled surface and dropped parts belong to no single pose.
@@ -467,6 +467,10 @@ void add_reasons(Quality& quality, Quality other, std::size_t side) {
 
 }  // namespace
 
+double ScanFigures::noise_growth() const {
+  return std::pow(std::max(distance / sensor.noise_distance, 1.0), 2);
+}
+
 bool BelowBox::has_most(double inside) const {
   return noise_end > 0 && pixels > min_object_pixels &&
          (inside < min_object_pixels || pixels > inside);
@@ -494,8 +498,10 @@ std::optional<SizeError> expected_size_error(const Scan& scan, const Eigen::Vect
 }
 
 void expect_higher_object(const Error& error, const PoseChecks& checks) {
-  const auto bottom = checks.lower_bottom();
-  if (error.code() == ErrorCode::model_empty && bottom) {
+  if (error.code() != ErrorCode::model_empty) {
+    return;
+  }
+  if (const auto bottom = checks.lower_bottom()) {
     throw Error(ErrorCode::model_empty, "what lies on the platform is lower than the scanned space",
                 "Build the model again with a scanned space that begins " +
                     number_text("%.1f mm", mm_from_metres(*bottom)) + " above the platform.");

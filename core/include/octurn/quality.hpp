@@ -30,9 +30,10 @@ std::string_view to_string(Verdict verdict);
 
 /// Why a model is not good.
 struct QualityReason {
-  /// "empty", "too-low", "turntable", "alike", "stops-disagree", "moved", "focal-length", "optics",
-  /// "floats", "sunk", "top-unseen", "little-seen", "filled-far", "hollow-filled", "cut-by-box",
-  /// "parts-dropped", "part-missing", "swollen", "large-file", "warm-up"
+  /// "empty", "too-low", "lasers-exchanged", "turntable", "alike", "stops-disagree", "moved",
+  /// "focal-length", "optics", "floats", "sunk", "top-unseen", "little-seen", "filled-far",
+  /// "hollow-filled", "cut-by-box", "parts-dropped", "part-missing", "swollen", "large-file",
+  /// "warm-up"
   std::string code = {};
   std::string detail = {};     ///< what was found and its size, for people
   std::string hint = {};       ///< what to do about it
@@ -66,6 +67,10 @@ struct Quality {
 struct BelowBox {
   double noise_end = 0;  ///< metres above z = 0: end of the platform's noise
   double pixels = 0;     ///< mean number at a stop between there and the box's bottom
+
+  /// Metres above z = 0: where the box could begin. A model merges the readings of many stops, so
+  /// its noise ends at less than half of their height.
+  double possible_bottom() const { return noise_end / 2; }
 
   /// Whether most of an object lies there. @param inside  mean number at a stop inside the box
   bool has_most(double inside) const;
@@ -108,6 +113,10 @@ struct ScanFigures {
   /// Metres above the highest reading of the object: end of a hole in the readings, at most stops.
   double unseen_top = 0;
   ShellFigures shell = {};
+
+  /// How much larger the sensor's noise is than at `noise_distance`: it grows with the distance's
+  /// square.
+  double noise_growth() const;
 };
 
 /// Measures the depth images of a scan while they are read for its model.

@@ -21,8 +21,7 @@ constexpr double min_length = 0.012;  // metres
 
 /// Cells without any surface near.
 std::set<ObjectCell> find_bare_cells(const ScanFigures& scan, const ModelReport& model) {
-  const double scale = std::pow(std::max(scan.distance / scan.sensor.noise_distance, 1.0), 2);
-  const double gap = max_gap * scale + voxels_of_gap * voxel_side(model);
+  const double gap = max_gap * scan.noise_growth() + voxels_of_gap * voxel_side(model);
   std::set<ObjectCell> bare;
   for (const Vector3d& point : scan.seen) {
     const bool is_noise = point.z() - object_cell_side / 2 < scan.below.noise_end;

@@ -154,8 +154,7 @@ std::optional<double> ScanCheck::lower_bottom() const {
     inside += static_cast<double>(stop->object_pixels) / static_cast<double>(stops.size());
   }
   const BelowBox below = find_low_object(heights, *platform, clip_.min.z(), stops.size());
-  // A model merges the readings of many stops: its noise ends at less than half of their height.
-  const double bottom = std::ceil(below.noise_end / 2 / bottom_step) * bottom_step;
+  const double bottom = std::ceil(below.possible_bottom() / bottom_step) * bottom_step;
   return below.has_most(inside) && bottom < clip_.min.z() ? std::optional(bottom) : std::nullopt;
 }
 

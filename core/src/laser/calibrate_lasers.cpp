@@ -333,7 +333,7 @@ LaserCalibration calibrate_lasers(const std::filesystem::path& folder, const Sca
     report.findings.push_back(describe_disagreement(disagreement(best)));
   }
   report.accepted = report.reason.empty();
-  if (report.accepted && std::ranges::any_of(slipped, [](double angle) { return angle != 0; })) {
+  if (report.accepted) {
     add_slips(report, slipped, step, scan.shots.size());
   }
   calibration.lasers = best.rig.lasers;

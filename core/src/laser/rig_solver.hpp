@@ -58,8 +58,8 @@ class RigSolver {
 
   /// Returns the slip that explains most of the distances between the surfaces of two lasers; none
   /// if too few points were seen before and after it.
-  /// @param at  looks there only
-  std::optional<Slip> find_slip(const LaserRig& rig, std::optional<std::size_t> at = {}) const;
+  /// @param only  the stop to look at
+  std::optional<Slip> find_slip(const LaserRig& rig, std::optional<std::size_t> only = {}) const;
 
   /// Sets how far the platform had slipped at each stop, radians.
   void set_slipped(std::span<const double> slipped);

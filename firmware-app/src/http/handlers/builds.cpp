@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "build/merged_scan.hpp"
 #include "http/file_response.hpp"
@@ -20,7 +21,9 @@ namespace {
 using nlohmann::json;
 
 json make_builds_json(const App& app, std::string_view id) {
-  return builds_json(find_scan(app, id), app.scanner.build_runs());
+  // Read before the scan: a build that ends in between is then in both, and not in neither.
+  const std::vector<BuildRun> runs = app.scanner.build_runs();
+  return builds_json(find_scan(app, id), runs);
 }
 
 /// The build of that number in a path. @throws Error "no-model"  if there is none
